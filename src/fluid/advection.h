@@ -1,0 +1,41 @@
+// Carries the velocity along itself: conservative 5th-order upwind fluxes on the staggered grid with 4th-order transport
+// velocity and deconvolved flux, Wicker-Skamarock RK3 (2002), the last pressure inside the stages; lower order beside
+// walls and cut faces. Stable to max(|u|+|v|) dt/h = 1.5: above 1.4 it takes sub-steps (up to four); beyond that a
+// Catmull-Rom semi-Lagrangian step with lagged pressure, stable at any size.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "base/threads.h"
+#include "fluid/boundary.h"
+
+namespace smokebox {
+
+class Advection {
+ public:
+  /// Makes a velocity of a middle stage roughly divergence-free.
+  using RoughProjection = std::function<void(Field& u, Field& v)>;
+
+  Advection(const Boundary& boundary, ThreadPool& pool);
+  ~Advection();
+
+  /// Finds the faces that need the low-order path; needed when boundary.version has changed.
+  void rebuild(const Boundary& boundary);
+
+  /// u, v: divergence-free velocity in; out: carried, with the accelerations (may be null) and the gradient of the lagged
+  /// `phi` (m/s, see PressureSolver; the impulse of one whole step of dt) applied, not yet projected.
+  void advance(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
+               const Field* accelerationV, double dt, const RoughProjection& projectRoughly);
+
+  std::size_t bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Fills the margins beyond the walls and the closed faces near the surface (inside solids) with what the stencils need:
+/// wall velocity along the normal, tangential velocity extended from the fluid and mixed with the wall's by its drag.
+void extendVelocity(const Boundary& boundary, Field& u, Field& v);
+
+}  // namespace smokebox

@@ -1,0 +1,33 @@
+// Implicit viscosity with cut links to the wall (Gibou 2002): symmetric positive definite, second order in the velocity
+// on curved and moving solids. Each component is solved by itself, by conjugate gradients.
+#pragma once
+#include <memory>
+
+#include "base/threads.h"
+#include "fluid/boundary.h"
+
+namespace smokebox {
+
+class Viscosity {
+ public:
+  struct Result {
+    int iterations = 0;
+    bool converged = false;
+  };
+  Viscosity(const Boundary& boundary, ThreadPool& pool);
+  ~Viscosity();
+  void rebuild(const Boundary& boundary);
+  /// (1 - dt nu Laplacian) u_new = u; `viscosity` nu is kinematic, m^2/s.
+  Result diffuse(const Boundary& boundary, Field& u, Field& v, double viscosity, double dt);
+  std::size_t bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The share of the tangential velocity that a surface and an inviscid fluid have in common, applied to the faces whose
+/// links end on a surface (without viscosity there is no boundary layer to do it).
+void applySurfaceDrag(const Boundary& boundary, Field& u, Field& v);
+
+}  // namespace smokebox
