@@ -1,0 +1,76 @@
+#include "fluid/fluid.h"
+
+namespace smokebox {
+
+Fluid::Fluid(const Boundary& boundary, const Parts& parts, ThreadPool& pool)
+    : parts_(parts),
+      u_(boundary.grid.nx, boundary.grid.ny),
+      v_(boundary.grid.nx, boundary.grid.ny),
+      phi_(boundary.grid.nx, boundary.grid.ny),
+      pressure_(boundary, pool),
+      advection_(boundary, pool) {
+  if (parts.forced) {
+    accelerationU_ = Field(boundary.grid.nx, boundary.grid.ny);
+    accelerationV_ = Field(boundary.grid.nx, boundary.grid.ny);
+  }
+  if (parts.viscous) viscosity_.emplace(boundary, pool);
+  if (parts.confined) confinement_.emplace(boundary, pool);
+}
+
+void Fluid::boundaryChanged(const Boundary& boundary) {
+  pressure_.rebuild(boundary);
+  advection_.rebuild(boundary);
+  if (viscosity_) viscosity_->rebuild(boundary);
+}
+
+void Fluid::clearForces() {
+  accelerationU_.fill(0);
+  accelerationV_.fill(0);
+}
+
+void Fluid::addConfinement(const Boundary& boundary, double strength, double length) {
+  confinement_->addForce(boundary, u_, v_, strength, length, accelerationU_, accelerationV_);
+}
+
+void Fluid::advect(const Boundary& boundary, double dt) {
+  // Two cycles are enough in the middle of a step (NUMERICS, "Velocity").
+  constexpr int kRoughCycles = 2;
+  advection_.advance(boundary, u_, v_, phi_, parts_.forced ? &accelerationU_ : nullptr,
+                     parts_.forced ? &accelerationV_ : nullptr, dt, [&](Field& u, Field& v) {
+                       pressure_.projectRoughly(boundary, u, v, kRoughCycles);
+                     });
+}
+
+void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {
+  viscosity_->diffuse(boundary, u_, v_, viscosity, dt);
+}
+
+void Fluid::drive(const Boundary& boundary, const Field& share, double velocityX, double velocityY) {
+  const Grid& grid = boundary.grid;
+  const auto du = static_cast<float>(velocityX), dv = static_cast<float>(velocityY);
+  for (int j = 0; j <= grid.ny; ++j)
+    for (int i = 0; i <= grid.nx; ++i) {
+      if (j < grid.ny && boundary.openX(i, j) > 0)
+        u_(i, j) += 0.5f * (share(i - 1, j) + share(i, j)) * (du - u_(i, j));
+      if (i < grid.nx && boundary.openY(i, j) > 0)
+        v_(i, j) += 0.5f * (share(i, j - 1) + share(i, j)) * (dv - v_(i, j));
+    }
+}
+
+void Fluid::applySurfaceDrag(const Boundary& boundary) { smokebox::applySurfaceDrag(boundary, u_, v_); }
+
+PressureSolver::Result Fluid::project(const Boundary& boundary, double dt, double tolerance, int maxIterations) {
+  return pressure_.project(boundary, u_, v_, phi_, 1e-6 * boundary.grid.h / dt, tolerance, maxIterations);
+}
+
+void Fluid::extend(const Boundary& boundary) { extendVelocity(boundary, u_, v_); }
+
+std::size_t Fluid::bytes() const {
+  std::size_t bytes = u_.bytes() + v_.bytes() + phi_.bytes() + pressure_.bytes() + advection_.bytes();
+  if (parts_.forced) bytes += accelerationU_.bytes() + accelerationV_.bytes();
+  if (viscosity_) bytes += viscosity_->bytes();
+  if (confinement_) bytes += confinement_->bytes();
+  return bytes;
+}
+
+}  // namespace smokebox

@@ -1,0 +1,68 @@
+// The fluid's velocity and the stages that move it through one step, each built only when a scene needs it.
+//
+// Order in a step (NUMERICS: Wicker-Skamarock RK3 with the last pressure inside): accelerations are collected, the
+// velocity is carried together with them and the lagged pressure gradient, diffused, driven by sources, and projected
+// for the correction to the pressure.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "fluid/advection.h"
+#include "fluid/boundary.h"
+#include "fluid/pressure.h"
+#include "fluid/viscosity.h"
+#include "fluid/vorticity.h"
+
+namespace smokebox {
+
+class Fluid {
+ public:
+  struct Parts {
+    bool viscous = false;   // a viscosity that is not 0, now or after an event
+    bool confined = false;  // vorticity confinement
+    bool forced = false;    // any acceleration at all: confinement, buoyancy, a force on a region
+    bool inviscidDrag = false;  // a surface with drag in a fluid without viscosity
+  };
+
+  Fluid(const Boundary& boundary, const Parts& parts, ThreadPool& pool);
+
+  /// The fractions have changed: refreshes what the stages keep of them.
+  void boundaryChanged(const Boundary& boundary);
+
+  /// Sets all accelerations to 0; the scene's own are then added to accelerationU() and accelerationV(), m/s^2.
+  void clearForces();
+  void addConfinement(const Boundary& boundary, double strength, double length);
+  void advect(const Boundary& boundary, double dt);
+  void diffuse(const Boundary& boundary, double viscosity, double dt);
+  /// Drives the fluid inside a shape at a velocity: share (0..1) of each cell's area.
+  void drive(const Boundary& boundary, const Field& share, double velocityX, double velocityY);
+  void applySurfaceDrag(const Boundary& boundary);
+  PressureSolver::Result project(const Boundary& boundary, double dt, double tolerance, int maxIterations);
+
+  /// m/s on the faces.
+  Field& u() { return u_; }
+  Field& v() { return v_; }
+  const Field& u() const { return u_; }
+  const Field& v() const { return v_; }
+  /// Accelerations on the faces; only with parts.forced.
+  Field& accelerationU() { return accelerationU_; }
+  Field& accelerationV() { return accelerationV_; }
+  /// Impulse of the pressure in a step, m/s at cell centres: pressure = density h phi / dt.
+  const Field& phi() const { return phi_; }
+
+  /// Fills walls' margins and the surroundings of surfaces inside solids, for stencils and pictures.
+  void extend(const Boundary& boundary);
+
+  std::size_t bytes() const;
+
+ private:
+  Parts parts_;
+  Field u_, v_, phi_;
+  Field accelerationU_, accelerationV_;
+  PressureSolver pressure_;
+  Advection advection_;
+  std::optional<Viscosity> viscosity_;
+  std::optional<Confinement> confinement_;
+};
+
+}  // namespace smokebox

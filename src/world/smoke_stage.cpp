@@ -1,0 +1,81 @@
+#include "world/smoke_stage.h"
+
+#include <algorithm>
+
+namespace smokebox {
+
+SmokeStage::SmokeStage(const SceneSpec& spec, const Boundary& boundary, double tolerance, ThreadPool& pool)
+    : grid_(spec.domain.grid),
+      tolerance_(tolerance),
+      colors_(spec.smokeColors()),
+      smoke_(boundary, pool, static_cast<int>(colors_.size())) {
+  for (const SourceSpec& source : spec.smoke.sources) {
+    Source made{source, channelOf(source.color), Field(grid_.nx, grid_.ny)};
+    coverShare(grid_, outlinesOf(source.shape, tolerance_), made.share);
+    sources_.push_back(std::move(made));
+  }
+}
+
+int SmokeStage::channelOf(const Color& color) const {
+  const auto found = std::find(colors_.begin(), colors_.end(), color);
+  checkInvariant(found != colors_.end(), "every colour of smoke has a channel");
+  return static_cast<int>(found - colors_.begin());
+}
+
+void SmokeStage::adopt(const SceneSpec& spec) {
+  for (std::size_t k = 0; k < sources_.size(); ++k) sources_[k].spec = spec.smoke.sources[k];
+}
+
+void SmokeStage::emit(const Boundary& boundary, double time, double dt) {
+  for (const Source& source : sources_) {
+    // The part of the step in which the source is on.
+    const double on = std::min(time + dt, source.spec.until) - std::max(time, source.spec.from);
+    if (on > 0 && source.spec.rate != 0)
+      smoke_.add(boundary, source.channel, source.share, source.spec.rate * std::min(on, dt));
+  }
+}
+
+void SmokeStage::burst(const Boundary& boundary, const BurstAction& burst) {
+  Field share(grid_.nx, grid_.ny);
+  coverShare(grid_, outlinesOf(burst.shape, tolerance_), share);
+  smoke_.add(boundary, channelOf(burst.color), share, burst.smoke);
+}
+
+void SmokeStage::addBuoyancy(const Boundary& boundary, double buoyancy, Vec2 gravity, Field& accelerationU,
+                             Field& accelerationV) const {
+  const double g = length(gravity);
+  const Vec2 up = g > 0 ? (-1 / g) * gravity : Vec2{0, 1};
+  const auto halfX = static_cast<float>(0.5 * buoyancy * up.x), halfY = static_cast<float>(0.5 * buoyancy * up.y);
+  const int nx = grid_.nx, ny = grid_.ny;
+  for (int channel = 0; channel < smoke_.channels(); ++channel) {
+    const Field& value = smoke_.value(channel);
+    for (int j = 0; j <= ny; ++j) {
+      const float *here = value.row(j), *below = value.row(j - 1);
+      const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
+      if (halfX != 0 && j < ny) {
+        float* au = accelerationU.row(j);
+#pragma omp simd
+        for (int i = 0; i <= nx; ++i) au[i] += openX[i] > 0 ? halfX * (here[i - 1] + here[i]) : 0.f;
+      }
+      if (halfY != 0) {
+        float* av = accelerationV.row(j);
+#pragma omp simd
+        for (int i = 0; i < nx; ++i) av[i] += openY[i] > 0 ? halfY * (below[i] + here[i]) : 0.f;
+      }
+    }
+  }
+}
+
+void SmokeStage::driveFluid(const Boundary& boundary, double time, Fluid& fluid) const {
+  for (const Source& source : sources_)
+    if (source.spec.velocity && time >= source.spec.from && time < source.spec.until)
+      fluid.drive(boundary, source.share, source.spec.velocity->x, source.spec.velocity->y);
+}
+
+std::size_t SmokeStage::bytes() const {
+  std::size_t bytes = smoke_.bytes();
+  for (const Source& source : sources_) bytes += source.share.bytes();
+  return bytes;
+}
+
+}  // namespace smokebox
