@@ -14,8 +14,8 @@ struct FilmFormat {
   Metadata metadata;  // title, scene, hash, version
 };
 
-/// Takes frames in order. Until finish() returns nothing stands under the final name; a sink that is destroyed before
-/// removes what it has written beside it.
+/// Takes frames in order. Until finish() returns nothing stands under the final name; a sink that is
+/// destroyed before removes what it has written beside it.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
@@ -28,8 +28,8 @@ class FrameSink {
 enum class OutputKind { mp4, mkv, y4m, pngSequence, pngStill };
 OutputKind outputKind(const std::string& output);
 
-/// Opens `output` (a path as given with -o). Throws UsageError, IoError, or VideoError (an odd size for yuv420p, ...).
-/// Whether an existing file may be replaced is asked before, by refuseExisting().
+/// Opens `output` (a path as given with -o). Throws UsageError, IoError, or VideoError (an odd size for
+/// yuv420p, ...). Whether an existing file may be replaced is asked before, by refuseExisting().
 std::unique_ptr<FrameSink> openSink(const std::string& output, const FilmFormat& format);
 /// Throws IoError if `output` exists (for a sequence: if any frame of it does) and names -y.
 void refuseExisting(const std::string& output);

@@ -1,0 +1,35 @@
+// A file that is written beside its final name and renamed when it is whole, so that nothing half-written
+// ever stands under the final name.
+#pragma once
+#include <filesystem>
+#include <string_view>
+
+namespace smokebox {
+
+class PartFile {
+ public:
+  /// Chooses where to write: `<target>.part` in the same folder. A symbolic link is followed. What exists and
+  /// is no regular file (a device, a pipe) is written directly, for a rename would replace it. Throws IoError
+  /// if the target is a folder, or its folder is not there or takes no files.
+  explicit PartFile(const std::filesystem::path& target);
+  /// Removes what was written, unless it was committed.
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  /// The file to write to.
+  const std::filesystem::path& path() const { return path_; }
+  /// The target is a device or a pipe.
+  bool direct() const { return direct_; }
+  /// To be called when the file is closed. Throws IoError.
+  void commit();
+
+ private:
+  std::filesystem::path target_, path_;
+  bool direct_ = false, committed_ = false;
+};
+
+/// Writes a whole small file so. Throws IoError, also for a full disk.
+void writeWholeFile(const std::filesystem::path& target, std::string_view content);
+
+}  // namespace smokebox

@@ -1,0 +1,47 @@
+// The FFmpeg libraries: handles that free themselves, and return codes that become exceptions.
+#pragma once
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/dict.h>
+#include <libavutil/frame.h>
+#include <libswscale/swscale.h>
+}
+
+#include <memory>
+#include <string>
+
+namespace smokebox::libav {
+
+struct Deleter {
+  void operator()(AVFormatContext* p) const { avformat_free_context(p); }
+  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
+  void operator()(AVFrame* p) const { av_frame_free(&p); }
+  void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(AVIOContext* p) const { avio_close(p); }
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+  void operator()(AVDictionary* p) const { av_dict_free(&p); }
+};
+using Format = std::unique_ptr<AVFormatContext, Deleter>;
+using Codec = std::unique_ptr<AVCodecContext, Deleter>;
+using Frame = std::unique_ptr<AVFrame, Deleter>;
+using Packet = std::unique_ptr<AVPacket, Deleter>;
+using Io = std::unique_ptr<AVIOContext, Deleter>;
+using Scaler = std::unique_ptr<SwsContext, Deleter>;
+
+/// Text of an AVERROR code.
+std::string errorText(int code);
+/// Throws VideoError "<what>: <reason>" if `code` is negative.
+int check(int code, const std::string& what);
+/// The same for what goes to a file: a code that comes from the system (a full disk) becomes an IoError.
+int checkWrite(int code, const std::string& what);
+/// Throws std::bad_alloc if an allocation of libav gave nothing.
+template <class T>
+T* allocated(T* p) {
+  if (!p) throw std::bad_alloc();
+  return p;
+}
+/// A frame with its own buffer.
+Frame makeFrame(int width, int height, AVPixelFormat format);
+
+}  // namespace smokebox::libav
