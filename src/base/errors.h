@@ -25,7 +25,15 @@ struct Problem {
 };
 
 /// Exit status of the program, section 2 of the design.
-enum class ExitStatus { ok = 0, failed = 1, usage = 2, badScene = 3, inputOutput = 4, imagesDiffer = 5, interrupted = 130 };
+enum class ExitStatus {
+  ok = 0,
+  failed = 1,
+  usage = 2,
+  badScene = 3,
+  inputOutput = 4,
+  imagesDiffer = 5,
+  interrupted = 130
+};
 
 class Error : public std::runtime_error {
  public:

@@ -5,7 +5,8 @@
 //   x-face (i, j)  the left face of cell (i, j), i = 0..nx: carries u
 //   y-face (i, j)  the lower face of cell (i, j), j = 0..ny: carries v
 //   node (i, j)    the lower left corner of cell (i, j)
-// Row j starts on a 64-byte boundary at i = 0. Valid: i in [-kMarginX, nx + kMarginX), j in [-kMarginY, ny + kMarginY).
+// Row j starts on a 64-byte boundary at i = 0. Valid: i in [-kMarginX, nx + kMarginX), j in [-kMarginY, ny +
+// kMarginY).
 #pragma once
 #include <cstddef>
 #include <memory>

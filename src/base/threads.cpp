@@ -3,25 +3,32 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
 
 namespace smokebox {
 
-// One loop at a time. Workers spin for a moment before they sleep: a step is a long row of short loops, and waking a
-// sleeping thread costs more than most of them.
+// One loop at a time. Workers spin for a moment before they sleep: a step is a long row of short loops, and
+// waking a sleeping thread costs more than most of them. The caller waits only for workers that have joined
+// the loop, so that a worker which the system has put aside (the cores also draw and encode) never holds up a
+// loop that is done.
 struct ThreadPool::State {
-  std::mutex mutex;
-  std::condition_variable wake;
-  std::atomic<unsigned> generation{0};
-  std::atomic<int> next{0}, busy{0};
+  // `ticket`: generation of the loop, whether it may still be joined, and how many workers are in it.
+  static constexpr std::uint64_t kActive = 0xffff, kOpen = 0x10000;
+  static constexpr int kGenerationShift = 17;
+  static constexpr int kSpins = 2000;
+
+  std::atomic<std::uint64_t> ticket{0};
+  std::atomic<int> next{0}, sleepers{0};
+  std::atomic<bool> stop{false};
   int count = 0;
   Call call = nullptr;
   void* context = nullptr;
   std::exception_ptr error;
-  std::mutex errorMutex;
-  bool stop = false;
+  std::mutex errorMutex, sleepMutex;
+  std::condition_variable wake;
   std::vector<std::thread> workers;
 
   void work() {
@@ -37,19 +44,36 @@ struct ThreadPool::State {
     }
   }
 
+  bool isNew(std::uint64_t t, std::uint64_t seen) const {
+    return (t & kOpen) != 0 && t >> kGenerationShift != seen;
+  }
+
   void serve() {
-    unsigned seen = 0;
-    for (;;) {
-      for (int spin = 0; spin < 4000 && generation.load(std::memory_order_acquire) == seen; ++spin) __builtin_ia32_pause();
-      if (generation.load(std::memory_order_acquire) == seen) {
-        std::unique_lock lock(mutex);
-        wake.wait(lock, [&] { return generation.load(std::memory_order_acquire) != seen; });
+    std::uint64_t seen = 0;
+    while (!stop.load()) {
+      std::uint64_t t = ticket.load();
+      for (int spin = 0; spin < kSpins && !isNew(t, seen) && !stop.load(std::memory_order_relaxed); ++spin) {
+        __builtin_ia32_pause();
+        t = ticket.load();
       }
-      seen = generation.load(std::memory_order_acquire);
-      if (stop) return;
+      if (!isNew(t, seen)) {
+        std::unique_lock lock(sleepMutex);
+        ++sleepers;
+        wake.wait(lock, [&] { return stop.load() || isNew(ticket.load(), seen); });
+        --sleepers;
+        continue;
+      }
+      if (!ticket.compare_exchange_weak(t, t + 1)) continue;
+      seen = t >> kGenerationShift;
       work();
-      busy.fetch_sub(1, std::memory_order_release);
+      ticket.fetch_sub(1);
     }
+  }
+
+  void wakeSleepers() {
+    if (sleepers.load() == 0) return;
+    { const std::lock_guard lock(sleepMutex); }
+    wake.notify_all();
   }
 };
 
@@ -58,31 +82,26 @@ ThreadPool::ThreadPool(int threads) : threads_(std::max(1, threads)), state_(std
 }
 
 ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard lock(state_->mutex);
-    state_->stop = true;
-    state_->generation.fetch_add(1, std::memory_order_release);
-  }
+  state_->stop = true;
+  { const std::lock_guard lock(state_->sleepMutex); }
   state_->wake.notify_all();
   for (std::thread& worker : state_->workers) worker.join();
 }
 
 void ThreadPool::runRaw(int count, Call call, void* context) {
   State& s = *state_;
-  {
-    const std::lock_guard lock(s.mutex);
-    s.count = count;
-    s.call = call;
-    s.context = context;
-    s.error = nullptr;
-    s.next.store(0, std::memory_order_relaxed);
-    s.busy.store(threads_ - 1, std::memory_order_relaxed);
-    s.generation.fetch_add(1, std::memory_order_release);
-  }
-  s.wake.notify_all();
+  s.count = count;
+  s.call = call;
+  s.context = context;
+  s.error = nullptr;
+  s.next.store(0);
+  const std::uint64_t generation = (s.ticket.load() >> State::kGenerationShift) + 1;
+  s.ticket.store(generation << State::kGenerationShift | State::kOpen);
+  s.wakeSleepers();
   s.work();
-  for (int spin = 0; s.busy.load(std::memory_order_acquire) != 0; ++spin) {
-    if (spin < 4000)
+  s.ticket.fetch_and(~State::kOpen);
+  for (int spin = 0; (s.ticket.load() & State::kActive) != 0; ++spin) {
+    if (spin < State::kSpins)
       __builtin_ia32_pause();
     else
       std::this_thread::yield();
@@ -90,6 +109,6 @@ void ThreadPool::runRaw(int count, Call call, void* context) {
   if (s.error) std::rethrow_exception(s.error);
 }
 
-int hardwareThreads() { return std::max(1u, std::thread::hardware_concurrency()); }
+int hardwareThreads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 }  // namespace smokebox

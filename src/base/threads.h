@@ -1,5 +1,6 @@
-// A pool of threads for loops whose iterations write disjoint outputs. Results never depend on the number of threads:
-// the loop is cut into the same blocks whatever the pool's size, and sums are joined block by block in order.
+// A pool of threads for loops whose iterations write disjoint outputs. Results never depend on the number of
+// threads: the loop is cut into the same blocks whatever the pool's size, and sums are joined block by block
+// in order.
 #pragma once
 #include <functional>
 #include <memory>
@@ -17,8 +18,8 @@ class ThreadPool {
 
   int threads() const { return threads_; }
 
-  /// Calls body(begin, end) for consecutive blocks of `grain` indices that cover [first, last). Blocks until all are
-  /// done; the first exception is passed on. Not reentrant.
+  /// Calls body(begin, end) for consecutive blocks of `grain` indices that cover [first, last). Blocks until
+  /// all are done; the first exception is passed on. Not reentrant.
   template <class Body>
   void blocks(int first, int last, int grain, Body&& body) {
     if (last <= first) return;
@@ -35,7 +36,8 @@ class ThreadPool {
   double sum(int first, int last, int grain, Body&& body) {
     if (last <= first) return 0;
     reserve(partial_, (last - first + grain - 1) / grain);
-    blocks(first, last, grain, [&](int begin, int end) { partial_[(begin - first) / grain] = body(begin, end); });
+    blocks(first, last, grain,
+           [&](int begin, int end) { partial_[(begin - first) / grain] = body(begin, end); });
     double total = 0;
     for (int k = 0, n = (last - first + grain - 1) / grain; k < n; ++k) total += partial_[k];
     return total;
@@ -46,10 +48,12 @@ class ThreadPool {
   double max(int first, int last, int grain, double lowest, Body&& body) {
     if (last <= first) return lowest;
     reserve(partial_, (last - first + grain - 1) / grain);
-    blocks(first, last, grain, [&](int begin, int end) { partial_[(begin - first) / grain] = body(begin, end); });
+    blocks(first, last, grain,
+           [&](int begin, int end) { partial_[(begin - first) / grain] = body(begin, end); });
     double largest = lowest;
     for (int k = 0, n = (last - first + grain - 1) / grain; k < n; ++k)
-      largest = !(partial_[k] <= largest) ? partial_[k] : largest;  // passes a NaN on
+      if (partial_[k] > largest || partial_[k] != partial_[k])
+        largest = partial_[k];  // a NaN, once there, stays
     return largest;
   }
 
@@ -63,7 +67,8 @@ class ThreadPool {
       for (int k = 0; k < count; ++k) one(k);
       return;
     }
-    runRaw(count, [](void* context, int block) { (*static_cast<One*>(context))(block); }, &one);
+    runRaw(
+        count, [](void* context, int block) { (*static_cast<One*>(context))(block); }, &one);
   }
   static void reserve(std::vector<double>& v, std::size_t n) {
     if (v.size() < n) v.resize(n);

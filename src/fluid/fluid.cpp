@@ -36,9 +36,8 @@ void Fluid::advect(const Boundary& boundary, double dt) {
   // Two cycles are enough in the middle of a step (NUMERICS, "Velocity").
   constexpr int kRoughCycles = 2;
   advection_.advance(boundary, u_, v_, phi_, parts_.forced ? &accelerationU_ : nullptr,
-                     parts_.forced ? &accelerationV_ : nullptr, dt, [&](Field& u, Field& v) {
-                       pressure_.projectRoughly(boundary, u, v, kRoughCycles);
-                     });
+                     parts_.forced ? &accelerationV_ : nullptr, dt,
+                     [&](Field& u, Field& v) { pressure_.projectRoughly(boundary, u, v, kRoughCycles); });
 }
 
 void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {
@@ -59,11 +58,16 @@ void Fluid::drive(const Boundary& boundary, const Field& share, double velocityX
 
 void Fluid::applySurfaceDrag(const Boundary& boundary) { smokebox::applySurfaceDrag(boundary, u_, v_); }
 
-PressureSolver::Result Fluid::project(const Boundary& boundary, double dt, double tolerance, int maxIterations) {
+PressureSolver::Result Fluid::project(const Boundary& boundary, double dt, double tolerance,
+                                      int maxIterations) {
   return pressure_.project(boundary, u_, v_, phi_, 1e-6 * boundary.grid.h / dt, tolerance, maxIterations);
 }
 
-void Fluid::extend(const Boundary& boundary) { extendVelocity(boundary, u_, v_); }
+Fluid::ExtendedVelocity Fluid::extended(const Boundary& boundary) const {
+  ExtendedVelocity copy{u_, v_};
+  extendVelocity(boundary, copy.u, copy.v);
+  return copy;
+}
 
 std::size_t Fluid::bytes() const {
   std::size_t bytes = u_.bytes() + v_.bytes() + phi_.bytes() + pressure_.bytes() + advection_.bytes();

@@ -1,8 +1,8 @@
 // The fluid's velocity and the stages that move it through one step, each built only when a scene needs it.
 //
-// Order in a step (NUMERICS: Wicker-Skamarock RK3 with the last pressure inside): accelerations are collected, the
-// velocity is carried together with them and the lagged pressure gradient, diffused, driven by sources, and projected
-// for the correction to the pressure.
+// Order in a step (NUMERICS: Wicker-Skamarock RK3 with the last pressure inside): accelerations are
+// collected, the velocity is carried together with them and the lagged pressure gradient, diffused, driven by
+// sources, and projected for the correction to the pressure.
 #pragma once
 #include <memory>
 #include <optional>
@@ -18,9 +18,9 @@ namespace smokebox {
 class Fluid {
  public:
   struct Parts {
-    bool viscous = false;   // a viscosity that is not 0, now or after an event
-    bool confined = false;  // vorticity confinement
-    bool forced = false;    // any acceleration at all: confinement, buoyancy, a force on a region
+    bool viscous = false;       // a viscosity that is not 0, now or after an event
+    bool confined = false;      // vorticity confinement
+    bool forced = false;        // any acceleration at all: confinement, buoyancy, a force on a region
     bool inviscidDrag = false;  // a surface with drag in a fluid without viscosity
   };
 
@@ -29,7 +29,8 @@ class Fluid {
   /// The fractions have changed: refreshes what the stages keep of them.
   void boundaryChanged(const Boundary& boundary);
 
-  /// Sets all accelerations to 0; the scene's own are then added to accelerationU() and accelerationV(), m/s^2.
+  /// Sets all accelerations to 0; the scene's own are then added to accelerationU() and accelerationV(),
+  /// m/s^2.
   void clearForces();
   void addConfinement(const Boundary& boundary, double strength, double length);
   void advect(const Boundary& boundary, double dt);
@@ -38,6 +39,9 @@ class Fluid {
   void drive(const Boundary& boundary, const Field& share, double velocityX, double velocityY);
   void applySurfaceDrag(const Boundary& boundary);
   PressureSolver::Result project(const Boundary& boundary, double dt, double tolerance, int maxIterations);
+
+  /// Sets the lagged pressure to 0.
+  void forgetPressure() { phi_.fill(0); }
 
   /// m/s on the faces.
   Field& u() { return u_; }
@@ -50,8 +54,12 @@ class Fluid {
   /// Impulse of the pressure in a step, m/s at cell centres: pressure = density h phi / dt.
   const Field& phi() const { return phi_; }
 
-  /// Fills walls' margins and the surroundings of surfaces inside solids, for stencils and pictures.
-  void extend(const Boundary& boundary);
+  /// A copy of the velocity that also fills the walls' margins and the surroundings of surfaces inside
+  /// solids.
+  struct ExtendedVelocity {
+    Field u, v;
+  };
+  ExtendedVelocity extended(const Boundary& boundary) const;
 
   std::size_t bytes() const;
 

@@ -1,5 +1,6 @@
-// Exact coverage of a grid by polygons: which parts of the grid's lines lie inside solids, how much of each cell is open,
-// and which faces must be shut because a wall thinner than a cell parts the cells on its two sides.
+// Exact coverage of a grid by polygons: which parts of the grid's lines lie inside solids, how much of each
+// cell is open, and which faces must be shut because a wall thinner than a cell parts the cells on its two
+// sides.
 #pragma once
 #include <vector>
 
@@ -9,8 +10,8 @@
 
 namespace smokebox {
 
-/// A piece of a line that lies inside solids. `solidLo`, `solidHi`: whose surface ends it; `solidLo` also stands for
-/// the solid that covers it where several overlap.
+/// A piece of a line that lies inside solids. `solidLo`, `solidHi`: whose surface ends it; `solidLo` also
+/// stands for the solid that covers it where several overlap.
 struct CoveredInterval {
   double lo = 0, hi = 0;  // metres along the line
   int solidLo = -1, solidHi = -1;
@@ -29,7 +30,8 @@ struct GridCover {
   Field openX, openY, volume;
 };
 
-/// Reuses the memory of `cover`. Solids may overlap, touch, be thinner than a cell, and stick out of the grid.
+/// Reuses the memory of `cover`. Solids may overlap, touch, be thinner than a cell, and stick out of the
+/// grid.
 void coverGrid(const Grid& grid, const std::vector<SolidOutline>& solids, GridCover& cover);
 
 /// Share of each cell's area inside one placed shape (sources, bursts, probes), into `share` (0..1); exact.

@@ -17,13 +17,28 @@ struct Pose {
 
 struct PlacedShape;
 
-struct CircleShape { double radius = 0; };
-struct EllipseShape { Vec2 radii; };
-struct BoxShape { Vec2 size; };                              // centred on (0, 0)
-struct CapsuleShape { double length = 0, radius = 0; };      // along x; length between the centres of the caps
-struct RegularShape { int sides = 3; double radius = 0; };   // circumradius; the first corner points along +x
-struct PolygonShape { std::vector<Vec2> points; };           // any simple polygon, either orientation
-struct UnionShape { std::vector<PlacedShape> parts; };
+struct CircleShape {
+  double radius = 0;
+};
+struct EllipseShape {
+  Vec2 radii;
+};
+struct BoxShape {
+  Vec2 size;
+};  // centred on (0, 0)
+struct CapsuleShape {
+  double length = 0, radius = 0;
+};  // along x; length between the centres of the caps
+struct RegularShape {
+  int sides = 3;
+  double radius = 0;
+};  // circumradius; the first corner points along +x
+struct PolygonShape {
+  std::vector<Vec2> points;
+};  // any simple polygon, either orientation
+struct UnionShape {
+  std::vector<PlacedShape> parts;
+};
 
 using Shape =
     std::variant<CircleShape, EllipseShape, BoxShape, CapsuleShape, RegularShape, PolygonShape, UnionShape>;
@@ -33,11 +48,12 @@ struct PlacedShape {
   Pose pose;
 };
 
-/// A closed polygon without self-crossings, counterclockwise (a hole: clockwise); the last point joins the first.
+/// A closed polygon without self-crossings, counterclockwise (a hole: clockwise); the last point joins the
+/// first.
 using Outline = std::vector<Vec2>;
 
-/// The outlines of a placed shape in the world. Curves become polygons of the same area whose largest distance from
-/// the true curve is about `tolerance` metres. A union gives the outlines of the merged region.
+/// The outlines of a placed shape in the world. Curves become polygons of the same area whose largest
+/// distance from the true curve is about `tolerance` metres. A union gives the outlines of the merged region.
 std::vector<Outline> outlinesOf(const PlacedShape& placed, double tolerance);
 
 /// The same outlines under a further motion: turned about (0, 0), then shifted.

@@ -18,12 +18,12 @@ struct SmokeFigures {
 /// A solid with `report: true`.
 struct BodyFigures {
   std::string name;
-  Vec2 position;          // of its centre of mass, m
+  Vec2 position;  // of its centre of mass, m
   double angleDegrees = 0;
-  Vec2 velocity;          // m/s, of the centre of mass
-  double spinDegrees = 0; // degrees/s
-  Vec2 force;             // of the fluid on it, N per metre of depth
-  double torque = 0;      // about the centre of mass, N m per metre of depth
+  Vec2 velocity;           // m/s, of the centre of mass
+  double spinDegrees = 0;  // degrees/s
+  Vec2 force;              // of the fluid on it, N per metre of depth
+  double torque = 0;       // about the centre of mass, N m per metre of depth
 };
 
 struct ProbeFigures {
@@ -40,8 +40,8 @@ struct StepFigures {
   int iterations = 0;
   double divergence = 0, compression = 0;
   SmokeFigures smoke;
-  Vec2 momentum;                                        // N s per metre of depth
-  double energyFluid = 0, energyBodies = 0;             // J per metre of depth
+  Vec2 momentum;                             // N s per metre of depth
+  double energyFluid = 0, energyBodies = 0;  // J per metre of depth
   int contacts = 0;
   double overlap = 0;
   std::vector<BodyFigures> bodies;

@@ -16,8 +16,8 @@ Vec2 carried(Vec2 p, const ProbeSpec& spec, const SolidScripts& solids) {
   return transformed(local, now);
 }
 
-// Bilinear value at (x, y), in cells from the sample (0, 0), over the samples whose weight is not 0: what lies inside a
-// solid has no part in it.
+// Bilinear value at (x, y), in cells from the sample (0, 0), over the samples whose weight is not 0: what
+// lies inside a solid has no part in it.
 template <class Value, class Weight>
 double interpolated(double x, double y, int nx, int ny, const Value& value, const Weight& weight) {
   x = std::clamp(x, 0.0, nx - 1.0);
@@ -77,7 +77,8 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
       const double x = p.x / grid.h, y = p.y / grid.h;
       figures.velocity.x = interpolated(x, y - 0.5, nx + 1, ny, fluid->u(), boundary.openX);
       figures.velocity.y = interpolated(x - 0.5, y, nx, ny + 1, fluid->v(), boundary.openY);
-      figures.pressure = pressureScale * interpolated(x - 0.5, y - 0.5, nx, ny, fluid->phi(), boundary.volume);
+      figures.pressure =
+          pressureScale * interpolated(x - 0.5, y - 0.5, nx, ny, fluid->phi(), boundary.volume);
       figures.smoke = interpolated(x - 0.5, y - 0.5, nx, ny, smokeAt, boundary.volume);
     } else {
       if (share_.empty()) share_ = Field(nx, ny);

@@ -45,7 +45,8 @@ void SmokeStage::addBuoyancy(const Boundary& boundary, double buoyancy, Vec2 gra
                              Field& accelerationV) const {
   const double g = length(gravity);
   const Vec2 up = g > 0 ? (-1 / g) * gravity : Vec2{0, 1};
-  const auto halfX = static_cast<float>(0.5 * buoyancy * up.x), halfY = static_cast<float>(0.5 * buoyancy * up.y);
+  const auto halfX = static_cast<float>(0.5 * buoyancy * up.x),
+             halfY = static_cast<float>(0.5 * buoyancy * up.y);
   const int nx = grid_.nx, ny = grid_.ny;
   for (int channel = 0; channel < smoke_.channels(); ++channel) {
     const Field& value = smoke_.value(channel);

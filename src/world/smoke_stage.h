@@ -1,9 +1,11 @@
-// Smoke in a scene: one channel for each colour, the sources and bursts that add to it, its buoyancy and its transport.
+// Smoke in a scene: one channel for each colour, the sources and bursts that add to it, its buoyancy and its
+// transport.
 #pragma once
 #include <vector>
 
 #include "fluid/fluid.h"
 #include "fluid/smoke.h"
+#include "geometry/coverage.h"
 #include "scene/spec.h"
 
 namespace smokebox {
@@ -19,7 +21,8 @@ class SmokeStage {
   void emit(const Boundary& boundary, double time, double dt);
   void burst(const Boundary& boundary, const BurstAction& burst);
   /// Adds upward (against gravity) acceleration per unit of smoke, to the faces.
-  void addBuoyancy(const Boundary& boundary, double buoyancy, Vec2 gravity, Field& accelerationU, Field& accelerationV) const;
+  void addBuoyancy(const Boundary& boundary, double buoyancy, Vec2 gravity, Field& accelerationU,
+                   Field& accelerationV) const;
   /// Drives the fluid in the sources that have a velocity.
   void driveFluid(const Boundary& boundary, double time, Fluid& fluid) const;
   void transport(const Boundary& boundary, const Fluid& fluid, double dt) {

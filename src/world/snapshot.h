@@ -1,4 +1,5 @@
-// What a picture needs to know of the world at one moment: a copy, so that the simulation can go on while it is drawn.
+// What a picture needs to know of the world at one moment: a copy, so that the simulation can go on while it
+// is drawn.
 #pragma once
 #include <array>
 #include <string>
@@ -19,16 +20,16 @@ struct SmokePicture {
 
 struct SolidPicture {
   std::string name;
-  int index = 0;                   // in SceneSpec::solids: stable along the film
-  std::vector<Outline> outlines;   // world coordinates now; holes clockwise
+  int index = 0;                  // in SceneSpec::solids: stable along the film
+  std::vector<Outline> outlines;  // world coordinates now; holes clockwise
   Pose pose;
   std::optional<Color> color;
 };
 
 struct ProbePicture {
   std::string name;
-  Vec2 at;                         // a point, or
-  std::vector<Outline> region;     // the outline of the region now
+  Vec2 at;                      // a point, or
+  std::vector<Outline> region;  // the outline of the region now
 };
 
 /// Fields that no layer asks for are empty.
@@ -39,14 +40,14 @@ struct Snapshot {
   Grid grid;
   bool periodicX = false, periodicY = false;
   std::vector<SmokePicture> smoke;
-  Field open;                      // open share of each cell, 0..1 (always set when there is a fluid)
-  Field pressure;                  // Pa, cell centres; extended into solids so that it can be interpolated up to edges
-  Field vorticity;                 // 1/s, at nodes (nx+1) x (ny+1), extended
-  Field velocityX, velocityY;      // m/s, cell centres, extended
+  Field open;       // open share of each cell, 0..1 (always set when there is a fluid)
+  Field pressure;   // Pa, cell centres; extended into solids so that it can be interpolated up to edges
+  Field vorticity;  // 1/s, at nodes (nx+1) x (ny+1), extended
+  Field velocityX, velocityY;        // m/s, cell centres, extended
   std::vector<SolidPicture> solids;  // only those shown
   std::vector<ProbePicture> probes;
-  std::vector<std::string> captions; // all that are up now
-  ViewSpec view;                   // as events have left it
+  std::vector<std::string> captions;  // all that are up now
+  ViewSpec view;                      // as events have left it
   /// The range of each field for the whole film: what the scene gives, or what was found beforehand.
   std::array<double, 2> pressureRange{-1, 1}, vorticityRange{-1, 1}, speedRange{0, 1};
 };

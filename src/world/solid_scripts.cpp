@@ -26,7 +26,8 @@ void SolidScripts::place(int solid, const Pose& pose) {
   MovingSolid& moving = moving_[solid];
   script.pose = pose;
   moving.origin = pose.position;
-  for (std::size_t k = 0; k < script.local.size(); ++k) moving.outlines[k] = transformed(script.local[k], pose);
+  for (std::size_t k = 0; k < script.local.size(); ++k)
+    moving.outlines[k] = transformed(script.local[k], pose);
 }
 
 void SolidScripts::move(double time, double dt) {
@@ -46,7 +47,7 @@ void SolidScripts::move(double time, double dt) {
   }
 }
 
-void SolidScripts::adopt(const std::vector<SolidSpec>& specs, double) {
+void SolidScripts::adopt(const std::vector<SolidSpec>& specs) {
   for (int k = 0; k < count(); ++k) {
     scripts_[k].spec.drag = moving_[k].drag = specs[k].drag;
     scripts_[k].spec.color = specs[k].color;

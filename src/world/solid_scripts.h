@@ -12,11 +12,12 @@ class SolidScripts {
   /// `tolerance`: how far a polygon may be from a curve, metres. All solids are placed for time 0, at rest.
   SolidScripts(const std::vector<SolidSpec>& specs, double tolerance);
 
-  /// Moves every solid from its pose at `time` to that at `time + dt`; the velocity is displacement over step.
+  /// Moves every solid from its pose at `time` to that at `time + dt`; the velocity is displacement over
+  /// step.
   void move(double time, double dt);
-  /// Takes over drags and motions that an event has changed. A steady motion (velocity, spin) that was replaced goes on
-  /// from where the solid is; keyframes and formulas are absolute.
-  void adopt(const std::vector<SolidSpec>& specs, double time);
+  /// Takes over drags and motions that an event has changed. A steady motion (velocity, spin) that was
+  /// replaced goes on from where the solid is; keyframes and formulas are absolute.
+  void adopt(const std::vector<SolidSpec>& specs);
   void motionReplaced(int solid, double time);
   void stop(int solid);
   void setShown(int solid, bool shown) { scripts_[solid].shown = shown; }
@@ -40,8 +41,8 @@ class SolidScripts {
     SolidSpec spec;
     std::vector<Outline> local;  // in the shape's own coordinates
     MassProperties mass;
-    Pose rest;                   // what the motion starts from
-    double since = 0;            // time at which `rest` holds, for steady motions
+    Pose rest;         // what the motion starts from
+    double since = 0;  // time at which `rest` holds, for steady motions
     Pose pose, start;
     bool stopped = false, shown = true;
   };

@@ -13,6 +13,7 @@
 #include "scene/document.h"
 #include "world/event_schedule.h"
 #include "world/figures.h"
+#include "world/needs.h"
 #include "world/probes.h"
 #include "world/smoke_stage.h"
 #include "world/snapshot.h"
@@ -56,8 +57,16 @@ class World {
   std::size_t bytes() const;
 
  private:
-  struct ActiveForce;  // a force on a region of the fluid that lasts for a while
-  struct ActiveCaption;
+  /// A force on a region of the fluid that lasts for a while.
+  struct ActiveForce {
+    Field share;
+    Vec2 acceleration;  // m/s^2
+    long untilStep;
+  };
+  struct ActiveCaption {
+    std::string text;
+    double until;
+  };
 
   void buildFluid();
   void setWalls(double time);
@@ -67,6 +76,8 @@ class World {
   void addForces();
   void projectFluid();
   void recordFigures();
+  void capturePressure(Field& pressure) const;
+  void captureVelocity(bool vorticity, Snapshot& snapshot) const;
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
 
   SceneDocument document_;
@@ -77,6 +88,7 @@ class World {
 
   EventSchedule events_;
   SolidScripts solids_;
+  Needs needs_;
   Boundary boundary_;
   SolidsOnGrid onGrid_;
   std::optional<Fluid> fluid_;
@@ -84,7 +96,8 @@ class World {
   ProbeSet probes_;
   std::vector<ActiveForce> forces_;
   std::vector<ActiveCaption> captions_;
-  bool wallsDependOnTime_ = false;
+  bool wallsDependOnTime_ = false, solidsMovedBefore_ = false;
+  Field pressure_;  // Pa; only for forces on solids
 
   long stepCount_ = 0;
   StepFigures figures_;

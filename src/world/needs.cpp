@@ -1,0 +1,54 @@
+#include "world/needs.h"
+
+#include <algorithm>
+
+namespace smokebox {
+
+namespace {
+
+bool isPrefix(const std::string& prefix, const std::string& path) {
+  return path == prefix || (path.size() > prefix.size() && path.compare(0, prefix.size(), prefix) == 0 &&
+                            path[prefix.size()] == '.');
+}
+
+template <class Action>
+bool anyEvent(const SceneSpec& spec) {
+  return std::any_of(spec.events.begin(), spec.events.end(),
+                     [](const EventSpec& event) { return std::holds_alternative<Action>(event.action); });
+}
+
+}  // namespace
+
+bool eventSets(const SceneSpec& spec, const std::string& path) {
+  return std::any_of(spec.events.begin(), spec.events.end(), [&](const EventSpec& event) {
+    const auto* set = std::get_if<SetAction>(&event.action);
+    return set && (isPrefix(set->path, path) || isPrefix(path, set->path));
+  });
+}
+
+Needs needsOf(const SceneSpec& spec) {
+  Needs needs;
+  needs.movingSolids = std::any_of(spec.solids.begin(), spec.solids.end(),
+                                   [](const SolidSpec& solid) { return !solid.motion.isStill(); });
+  needs.reports = std::any_of(spec.solids.begin(), spec.solids.end(),
+                              [](const SolidSpec& solid) { return solid.report; });
+  needs.fluid = spec.hasFluid;
+  if (!needs.fluid) return needs;
+
+  needs.smoke = !spec.smoke.sources.empty() || anyEvent<BurstAction>(spec);
+  needs.buoyancy = needs.smoke && (spec.smoke.buoyancy != 0 || eventSets(spec, "smoke.buoyancy"));
+  needs.sourcesDrive = !spec.smoke.sources.empty() &&
+                       (eventSets(spec, "smoke.sources") ||
+                        std::any_of(spec.smoke.sources.begin(), spec.smoke.sources.end(),
+                                    [](const SourceSpec& source) { return source.velocity.has_value(); }));
+  needs.parts.viscous = spec.fluid.viscosity > 0 || eventSets(spec, "fluid.viscosity");
+  needs.parts.confined = spec.fluid.vorticity != 0 || eventSets(spec, "fluid.vorticity");
+  needs.parts.forced = needs.parts.confined || needs.buoyancy || anyEvent<ForceAction>(spec);
+  needs.parts.inviscidDrag =
+      !needs.parts.viscous &&
+      (eventSets(spec, "solids") || std::any_of(spec.solids.begin(), spec.solids.end(),
+                                                [](const SolidSpec& solid) { return solid.drag > 0; }));
+  return needs;
+}
+
+}  // namespace smokebox

@@ -1,0 +1,27 @@
+// What a scene needs: decides which stages a World is built of. "Model no more than a scene needs" begins
+// here.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fluid/fluid.h"
+#include "scene/spec.h"
+
+namespace smokebox {
+
+struct Needs {
+  bool fluid = false;
+  Fluid::Parts parts;
+  bool smoke = false;  // a source or a burst
+  bool buoyancy = false;
+  bool sourcesDrive = false;  // a source with a velocity
+  bool movingSolids = false;
+  bool reports = false;  // force and torque on a solid
+};
+
+Needs needsOf(const SceneSpec& spec);
+
+/// Does an event set this key, or one above or below it?
+bool eventSets(const SceneSpec& spec, const std::string& path);
+
+}  // namespace smokebox

@@ -1,0 +1,51 @@
+#include "world/plan.h"
+
+#include "world/needs.h"
+
+namespace smokebox {
+
+Plan planOf(const SceneSpec& spec) {
+  const Needs needs = needsOf(spec);
+  Plan plan;
+  plan.nx = spec.domain.grid.nx;
+  plan.ny = spec.domain.grid.ny;
+  plan.cells = needs.fluid ? spec.domain.grid.cells() : 0;
+  plan.steps = spec.time.steps;
+  plan.frames = spec.time.steps / spec.time.stepsPerFrame;
+  plan.solids = static_cast<int>(spec.solids.size());
+  plan.smokeColors = needs.smoke ? static_cast<int>(spec.smokeColors().size()) : 0;
+
+  auto line = [&](const char* stage, bool modelled, const char* yes, const char* no) {
+    plan.lines.push_back({stage, modelled, modelled ? yes : no});
+  };
+  line("fluid", needs.fluid, "the scene names a fluid, smoke or an inflow",
+       "no fluid, smoke or inflow is named");
+  line("pressure projection", needs.fluid, "an incompressible fluid", "no fluid");
+  line("viscosity", needs.parts.viscous, "fluid.viscosity", "fluid.viscosity is 0");
+  line("vorticity confinement", needs.parts.confined, "fluid.vorticity", "fluid.vorticity is 0");
+  line("surface drag", needs.parts.inviscidDrag, "a solid with drag in an inviscid fluid",
+       needs.parts.viscous ? "the viscosity does it" : "no solid has drag");
+  line("smoke", needs.smoke, "sources or bursts", "no source and no burst");
+  line("buoyancy", needs.buoyancy, "smoke.buoyancy", needs.smoke ? "smoke.buoyancy is 0" : "no smoke");
+  line("driven sources", needs.sourcesDrive, "a source with a velocity", "no source has a velocity");
+  line("solids on the grid", needs.fluid && plan.solids > 0,
+       needs.movingSolids ? "anew when one moves" : "once: none moves", "no solids in a fluid");
+  line("forces on solids", needs.reports, "report: true", "no solid reports");
+  line("probes", !spec.probes.empty(), "probes", "no probes");
+  line("events", !spec.events.empty(), "events", "no events");
+
+  // Fields of floats: velocity, pressure, fractions and wall velocities; stages of the integrator; the
+  // multigrid (a third more for its coarse levels); then what each part adds.
+  double fields = 0;
+  if (needs.fluid) {
+    fields = 8 + 8 + 8 * 4.0 / 3;
+    if (needs.parts.forced) fields += 2;
+    if (needs.parts.confined) fields += 2;
+    if (needs.parts.viscous) fields += 8;
+    if (needs.smoke) fields += 3.0 * plan.smokeColors + 6 + static_cast<double>(spec.smoke.sources.size());
+  }
+  plan.memoryMb = fields * 4 * (plan.nx + 32.0) * (plan.ny + 8.0) / (1024 * 1024);
+  return plan;
+}
+
+}  // namespace smokebox

@@ -1,0 +1,114 @@
+#include "world/ranges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "world/world.h"
+
+namespace smokebox {
+
+namespace {
+
+constexpr int kCoarseCells = 96;  // along the shorter side, about
+
+// The largest divisor of the grid that leaves at least kCoarseCells along the shorter side and keeps cells
+// square.
+int coarsening(const Grid& grid) {
+  const int shorter = std::min(grid.nx, grid.ny);
+  const int common = std::gcd(grid.nx, grid.ny);
+  for (int factor = common; factor > 1; --factor)
+    if (common % factor == 0 && shorter / factor >= kCoarseCells) return factor;
+  return 1;
+}
+
+double quantile(std::vector<float>& values, double share) {
+  if (values.empty()) return 0;
+  const auto k = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
+  return values[k];
+}
+
+struct Wanted {
+  bool pressure = false, vorticity = false, speed = false;
+  bool any() const { return pressure || vorticity || speed; }
+};
+
+// What one frame reaches: all but a thousandth of the open cells stay below it.
+double reach(const Snapshot& snapshot, const Field& field, std::vector<float>& scratch) {
+  scratch.clear();
+  for (int j = 0; j < snapshot.grid.ny; ++j)
+    for (int i = 0; i < snapshot.grid.nx; ++i)
+      if (snapshot.open(i, j) > 0.5f) scratch.push_back(std::fabs(field(i, j)));
+  return quantile(scratch, 0.999);
+}
+
+double speedReach(const Snapshot& snapshot, std::vector<float>& scratch) {
+  scratch.clear();
+  for (int j = 0; j < snapshot.grid.ny; ++j)
+    for (int i = 0; i < snapshot.grid.nx; ++i)
+      if (snapshot.open(i, j) > 0.5f) {
+        const float x = snapshot.velocityX(i, j), y = snapshot.velocityY(i, j);
+        scratch.push_back(std::sqrt(x * x + y * y));
+      }
+  return quantile(scratch, 0.999);
+}
+
+}  // namespace
+
+double niceCeiling(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (step * power >= value * (1 - 1e-9)) return step * power;
+  return 10 * power;
+}
+
+FilmRanges findRanges(const SceneDocument& document, int threads) {
+  const SceneSpec spec = document.spec();
+  FilmRanges ranges;
+  Wanted wanted;
+  auto look = [](const LayerSpec& layer, bool& want, std::array<double, 2>& range) {
+    if (layer.range)
+      range = *layer.range;
+    else
+      want = true;
+  };
+  for (const LayerSpec& layer : spec.view.layers) {
+    if (layer.kind == LayerKind::pressure) look(layer, wanted.pressure, ranges.pressure);
+    if (layer.kind == LayerKind::vorticity) look(layer, wanted.vorticity, ranges.vorticity);
+    if (layer.kind == LayerKind::speed) look(layer, wanted.speed, ranges.speed);
+  }
+  // A layer may be switched on by an event: then every field is looked at.
+  if (eventSets(spec, "view.layers")) wanted = {true, true, true};
+  if (!spec.hasFluid || !wanted.any()) return ranges;
+
+  SceneDocument coarse = document;
+  const int factor = coarsening(spec.domain.grid);
+  coarse.set("domain.resolution", std::to_string(spec.domain.grid.nx / factor), SourcePlace{});
+  coarse.set("view.layers", "[pressure, vorticity, speed]", SourcePlace{});
+  World world(coarse, {threads, false});
+  Snapshot snapshot;
+  std::vector<float> scratch, pressure, vorticity, speed;
+  const long frames = spec.time.steps / spec.time.stepsPerFrame;
+  for (long frame = 1; frame <= frames; ++frame) {
+    for (int k = 0; k < spec.time.stepsPerFrame; ++k) world.step();
+    world.capture(snapshot);
+    if (!snapshot.pressure.empty())
+      pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
+    if (!snapshot.vorticity.empty())
+      vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
+    if (!snapshot.velocityX.empty()) speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
+  }
+  auto settle = [](std::vector<float>& reached, bool want, std::array<double, 2>& range, bool bothSigns) {
+    const double top = want ? quantile(reached, 0.95) : 0;
+    if (top > 0) range = {bothSigns ? -niceCeiling(top) : 0, niceCeiling(top)};
+  };
+  settle(pressure, wanted.pressure, ranges.pressure, true);
+  settle(vorticity, wanted.vorticity, ranges.vorticity, true);
+  settle(speed, wanted.speed, ranges.speed, false);
+  return ranges;
+}
+
+}  // namespace smokebox

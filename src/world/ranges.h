@@ -1,0 +1,28 @@
+// One range of each shown field for the whole film, known before the first frame is drawn: the film is
+// simulated once on a coarser grid and its values are looked at. Costs a few per cent of the film.
+#pragma once
+#include <array>
+
+#include "scene/document.h"
+#include "world/snapshot.h"
+
+namespace smokebox {
+
+struct FilmRanges {
+  std::array<double, 2> pressure{-1, 1}, vorticity{-1, 1}, speed{0, 1};
+  void put(Snapshot& snapshot) const {
+    snapshot.pressureRange = pressure;
+    snapshot.vorticityRange = vorticity;
+    snapshot.speedRange = speed;
+  }
+};
+
+/// Ranges that the scene gives are taken; others are found by a coarse run, in which all but one value in a
+/// thousand of the film's frames (and all but one frame in twenty, for a violent start) lie inside. Runs
+/// nothing if no layer needs it.
+FilmRanges findRanges(const SceneDocument& document, int threads);
+
+/// The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below `value` (> 0).
+double niceCeiling(double value);
+
+}  // namespace smokebox

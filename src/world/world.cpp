@@ -1,0 +1,296 @@
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/hash.h"
+#include "base/maths.h"
+#include "world/ledger.h"
+#include "world/needs.h"
+
+namespace smokebox {
+
+namespace {
+// A polygon may miss a curve by this share of a cell: far below the error of the scheme at the surface.
+constexpr double kOutlineTolerance = 1e-3;
+}  // namespace
+
+World::World(const SceneDocument& document, const Options& options)
+    : document_(document),
+      spec_(document.spec()),
+      options_(options),
+      pool_(options.threads),
+      events_(spec_.events, spec_.time.step),
+      solids_(spec_.solids, kOutlineTolerance * spec_.domain.grid.h),
+      needs_(needsOf(spec_)),
+      probes_(spec_.probes, kOutlineTolerance * spec_.domain.grid.h) {
+  boundary_.grid = spec_.domain.grid;
+  if (needs_.fluid) buildFluid();
+  if (options_.figures) recordFigures();
+}
+
+World::~World() = default;
+
+void World::step() {
+  const double dt = spec_.time.step;
+  clock_.begin();
+  fireEvents();
+  clock_.stage("events");
+  solids_.move(time(), dt);
+  clock_.stage("scripts");
+  if (fluid_) {
+    coverGrid(solids_.shapesMoved());
+    clock_.stage("cover");
+    if (smoke_) smoke_->emit(boundary_, time(), dt);
+    if (needs_.parts.forced) addForces();
+    clock_.stage("forces");
+    fluid_->advect(boundary_, dt);
+    clock_.stage("advect");
+    if (needs_.parts.viscous) fluid_->diffuse(boundary_, spec_.fluid.viscosity, dt);
+    if (needs_.parts.inviscidDrag && spec_.fluid.viscosity == 0) fluid_->applySurfaceDrag(boundary_);
+    if (needs_.sourcesDrive) smoke_->driveFluid(boundary_, time(), *fluid_);
+    clock_.stage("diffuse");
+    projectFluid();
+    clock_.stage("project");
+    if (smoke_) smoke_->transport(boundary_, *fluid_, dt);
+    clock_.stage("smoke");
+  }
+  ++stepCount_;
+  if (options_.figures) recordFigures();
+  clock_.stage("ledger");
+  figures_.step = stepCount_;
+  figures_.time = time();
+  figures_.stageMs = clock_.stages();
+  figures_.totalMs = clock_.totalMs();
+  stepMs_.push_back(static_cast<float>(figures_.totalMs));
+}
+
+// --- building
+// ---------------------------------------------------------------------------------------------------------
+
+void World::buildFluid() {
+  const Grid& grid = boundary_.grid;
+  for (int s = 0; s < 4; ++s) {
+    const WallSpec& wall = spec_.domain.walls[s];
+    boundary_.sides[s].kind = wall.kind;
+    wallsDependOnTime_ |= wall.velocity[0].dependsOnTime() || wall.velocity[1].dependsOnTime();
+  }
+  setWalls(0);
+  onGrid_.cover(solids_.moving(), true, boundary_);
+  fluid_.emplace(boundary_, needs_.parts, pool_);
+  if (needs_.smoke) smoke_.emplace(spec_, boundary_, kOutlineTolerance * grid.h, pool_);
+
+  const auto& start = spec_.fluid.velocity;
+  for (int j = 0; j <= grid.ny; ++j)
+    for (int i = 0; i <= grid.nx; ++i) {
+      const Vec2 x = grid.xFaceCentre(i, j), y = grid.yFaceCentre(i, j);
+      if (j < grid.ny)
+        fluid_->u()(i, j) =
+            boundary_.openX(i, j) > 0 ? static_cast<float>(start[0](x.x, x.y, 0)) : boundary_.wallU(i, j);
+      if (i < grid.nx)
+        fluid_->v()(i, j) =
+            boundary_.openY(i, j) > 0 ? static_cast<float>(start[1](y.x, y.y, 0)) : boundary_.wallV(i, j);
+    }
+  projectFluid();
+  fluid_->forgetPressure();  // that of the start is an impulse without a duration
+}
+
+void World::setWalls(double time) {
+  const Grid& grid = boundary_.grid;
+  for (int s = 0; s < 4; ++s) {
+    const bool vertical = s < 2;  // left and right
+    const auto& velocity = spec_.domain.walls[s].velocity;
+    SideFlow& side = boundary_.sides[s];
+    const int faces = vertical ? grid.ny : grid.nx;
+    side.u.resize(faces);
+    side.v.resize(faces);
+    for (int k = 0; k < faces; ++k) {
+      const double along = (k + 0.5) * grid.h;
+      const double x = s == 0   ? 0
+                       : s == 1 ? grid.width()
+                                : along,
+                   y = s == 2   ? 0
+                       : s == 3 ? grid.height()
+                                : along;
+      side.u[k] = static_cast<float>(velocity[0](x, y, time));
+      side.v[k] = static_cast<float>(velocity[1](x, y, time));
+    }
+  }
+}
+
+// --- events
+// -----------------------------------------------------------------------------------------------------------
+
+void World::fireEvents() {
+  std::erase_if(forces_, [&](const ActiveForce& force) { return stepCount_ >= force.untilStep; });
+  std::erase_if(captions_, [&](const ActiveCaption& caption) { return time() >= caption.until; });
+  for (const int index : events_.due(stepCount_)) {
+    const auto& action = spec_.events[index].action;
+    if (const auto* set = std::get_if<SetAction>(&action)) {
+      adoptSettings(SetAction(*set));  // a copy: the scene that holds it is replaced
+    } else if (const auto* burst = std::get_if<BurstAction>(&action)) {
+      if (smoke_) smoke_->burst(boundary_, *burst);
+    } else if (const auto* force = std::get_if<ForceAction>(&action)) {
+      if (!fluid_) continue;
+      const Grid& grid = boundary_.grid;
+      const long steps = std::max(1L, std::lround(force->duration / spec_.time.step));
+      ActiveForce made{Field(grid.nx, grid.ny), force->acceleration, stepCount_ + steps};
+      coverShare(grid, outlinesOf(force->shape, kOutlineTolerance * grid.h), made.share);
+      forces_.push_back(std::move(made));
+    } else if (const auto* visibility = std::get_if<VisibilityAction>(&action)) {
+      solids_.setShown(solids_.find(visibility->solid), visibility->visible);
+    } else if (const auto* stop = std::get_if<StopAction>(&action)) {
+      solids_.stop(solids_.find(stop->solid));
+    } else if (const auto* caption = std::get_if<CaptionAction>(&action)) {
+      captions_.push_back({caption->text, time() + caption->duration});
+    }
+  }
+}
+
+void World::adoptSettings(const SetAction& action) {
+  document_.set(action.path, action.value, action.place);
+  spec_ = document_.spec();
+  solids_.adopt(spec_.solids);
+  for (int k = 0; k < solids_.count(); ++k) {
+    const std::string byName = "solids." + spec_.solids[k].name, byIndex = "solids." + std::to_string(k);
+    if (action.path.starts_with(byName + ".motion") || action.path.starts_with(byIndex + ".motion"))
+      solids_.motionReplaced(k, time());
+  }
+  if (!fluid_) return;
+  if (smoke_) smoke_->adopt(spec_);
+  setWalls(time() + spec_.time.step);
+  onGrid_.cover(solids_.moving(), false, boundary_);
+}
+
+// --- the fluid's stages
+// -----------------------------------------------------------------------------------------------
+
+void World::coverGrid(bool shapesMoved) {
+  if (wallsDependOnTime_) setWalls(time() + spec_.time.step);
+  if (!shapesMoved && !solidsMovedBefore_ && !wallsDependOnTime_) return;
+  onGrid_.cover(solids_.moving(), shapesMoved, boundary_);
+  if (shapesMoved) fluid_->boundaryChanged(boundary_);
+  solidsMovedBefore_ = shapesMoved;  // one more time after the last move, for the velocities to become 0
+}
+
+void World::addForces() {
+  const Grid& grid = boundary_.grid;
+  fluid_->clearForces();
+  if (spec_.fluid.vorticity != 0)
+    fluid_->addConfinement(boundary_, spec_.fluid.vorticity, std::min(grid.width(), grid.height()) / 256);
+  if (smoke_ && spec_.smoke.buoyancy != 0)
+    smoke_->addBuoyancy(boundary_, spec_.smoke.buoyancy, spec_.gravity, fluid_->accelerationU(),
+                        fluid_->accelerationV());
+  for (const ActiveForce& force : forces_) {
+    const auto ax = static_cast<float>(0.5 * force.acceleration.x),
+               ay = static_cast<float>(0.5 * force.acceleration.y);
+    for (int j = 0; j <= grid.ny; ++j)
+      for (int i = 0; i <= grid.nx; ++i) {
+        if (boundary_.openX(i, j) > 0)
+          fluid_->accelerationU()(i, j) += ax * (force.share(i - 1, j) + force.share(i, j));
+        if (boundary_.openY(i, j) > 0)
+          fluid_->accelerationV()(i, j) += ay * (force.share(i, j - 1) + force.share(i, j));
+      }
+  }
+}
+
+void World::projectFluid() {
+  const MethodSpec& method = spec_.method;
+  const PressureSolver::Result result =
+      fluid_->project(boundary_, spec_.time.step, method.tolerance, method.maxIterations);
+  figures_.iterations = result.iterations;
+  figures_.divergence = result.divergence;
+  figures_.compression = result.compression;
+  divergenceMax_ = std::max(divergenceMax_, result.divergence);
+  if (!std::isfinite(result.divergence))
+    fail("the velocity is not a number " + whereNotFinite(*fluid_, boundary_.grid),
+         "try a smaller time.step, or a smaller force, buoyancy or fluid.vorticity");
+  if (!result.converged) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the pressure did not converge: divergence %.2g after %d iterations, wanted %.2g",
+                  result.divergence, result.iterations, method.tolerance);
+    fail(text, "try a smaller time.step, a larger method.max_iterations or a larger method.tolerance");
+  }
+}
+
+void World::fail(const std::string& what, const std::string& hint) const {
+  char place[64];
+  std::snprintf(place, sizeof place, "step %ld (t = %.4g s): ", stepCount_ + 1, time() + spec_.time.step);
+  throw SimulationError(place + what + " (" + hint + ")");
+}
+
+// --- figures
+// ----------------------------------------------------------------------------------------------------------
+
+void World::recordFigures() {
+  const double pressureScale = spec_.fluid.density * boundary_.grid.h / spec_.time.step;
+  figures_.bodies.clear();
+  if (fluid_) {
+    const FluidTotals totals = fluidTotals(boundary_, *fluid_, spec_.fluid.density, pool_);
+    figures_.momentum = totals.momentum;
+    figures_.energyFluid = totals.kineticEnergy;
+    if (needs_.reports)
+      reportSolids(boundary_, *fluid_, solids_, pressureScale, spec_.fluid.density * spec_.fluid.viscosity,
+                   pressure_, figures_.bodies);
+  }
+  if (smoke_) {
+    const Smoke::Totals totals = smoke_->smoke().totals();
+    figures_.smoke = {totals.mass, totals.emitted, totals.left, totals.min, totals.max};
+  }
+  if (!probes_.empty())
+    probes_.read(boundary_, fluid(), smoke_ ? &smoke_->smoke() : nullptr, pressureScale, solids_,
+                 figures_.probes);
+}
+
+SummaryFigures World::summary() const {
+  SummaryFigures summary;
+  summary.steps = stepCount_;
+  summary.cells = boundary_.grid.cells();
+  summary.threads = options_.threads;
+  if (!stepMs_.empty()) {
+    std::vector<float> sorted = stepMs_;
+    std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+    summary.stepMsMedian = sorted[sorted.size() / 2];
+  }
+  summary.divergenceMax = divergenceMax_;
+  if (smoke_) {
+    const Smoke::Totals totals = smoke_->smoke().totals();
+    if (totals.emitted > 0)
+      summary.smokeError = (totals.mass - (totals.emitted - totals.left)) / totals.emitted;
+  }
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(stateHash()));
+  summary.stateHash = text;
+  return summary;
+}
+
+std::uint64_t World::stateHash() const {
+  Fnv1a hash;
+  const Grid& grid = boundary_.grid;
+  auto add = [&](const Field& field, int columns, int rows) {
+    for (int j = 0; j < rows; ++j) hash.update(field.row(j), columns * sizeof(float));
+  };
+  hash.update(&stepCount_, sizeof stepCount_);
+  if (fluid_) {
+    add(fluid_->u(), grid.nx + 1, grid.ny);
+    add(fluid_->v(), grid.nx, grid.ny + 1);
+    add(fluid_->phi(), grid.nx, grid.ny);
+  }
+  if (smoke_)
+    for (int c = 0; c < smoke_->smoke().channels(); ++c) add(smoke_->smoke().value(c), grid.nx, grid.ny);
+  for (int k = 0; k < solids_.count(); ++k) hash.update(&solids_.pose(k), sizeof(Pose));
+  return hash.value();
+}
+
+std::size_t World::bytes() const {
+  std::size_t bytes = 0;
+  if (fluid_)
+    bytes += fluid_->bytes() + boundary_.openX.bytes() + boundary_.openY.bytes() + boundary_.volume.bytes() +
+             boundary_.wallU.bytes() + boundary_.wallV.bytes();
+  if (smoke_) bytes += smoke_->bytes();
+  return bytes;
+}
+
+}  // namespace smokebox
