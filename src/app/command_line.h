@@ -1,0 +1,52 @@
+// What the user typed, as plain data. The only place that knows CLI11.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace smokebox {
+
+/// What every command that runs a scene takes.
+struct RunOptions {
+  std::string scene;
+  std::vector<std::string> settings;  // "key=value", in order
+  int threads = 1;
+  std::string stats;  // file for the figures; empty: none
+};
+
+struct RenderOptions : RunOptions {
+  std::vector<std::string> outputs;             // empty: renders/<scene>.mp4
+  std::optional<double> at;                     // s
+  std::optional<std::pair<long, long>> frames;  // first and last, both drawn
+  bool replace = false, quiet = false;
+};
+
+struct SimulateOptions : RunOptions {
+  std::optional<long> steps;
+};
+
+struct CheckOptions {
+  std::vector<std::string> scenes;
+};
+
+struct PlanOptions {
+  std::string scene;
+  std::vector<std::string> settings;
+};
+
+/// --help and --version: nothing to do but to print this.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<ShowText, RenderOptions, SimulateOptions, CheckOptions, PlanOptions>;
+
+/// Throws UsageError.
+Command parseCommandLine(int argc, const char* const* argv);
+
+/// "1.2.3".
+std::string programVersion();
+
+}  // namespace smokebox
