@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/errors.h"
 #include "base/threads.h"
+#include "scene/nearest.h"
 
 namespace smokebox {
 
@@ -15,36 +15,12 @@ namespace {
 constexpr int kMaxThreads = 256;
 constexpr int kMaxPixels = 16384;  // along a side of a picture
 
-/// Number of letters to insert, drop or change.
-int editDistance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    int diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const int changed = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
-/// Throws if the first argument is no command and no option: CLI11 would only say that it was not expected.
+/// CLI11 would only say that the word was not expected.
 void refuseUnknownCommand(const CLI::App& app, const std::string& word) {
-  std::string closest, all;
-  int distance = 3;  // farther words are no slip of the finger
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_name() == word) return;
-    all += (all.empty() ? "" : ", ") + command->get_name();
-    const int d = editDistance(word, command->get_name());
-    if (d < distance) {
-      distance = d;
-      closest = command->get_name();
-    }
-  }
-  throw UsageError("unknown command '" + word + "'; " +
-                   (closest.empty() ? "there are " + all : "did you mean '" + closest + "'?"));
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    throw UsageError("unknown command '" + word + "'; " + suggestion(word, names));
 }
 
 std::string checkSetting(const std::string& text) {
