@@ -1,7 +1,10 @@
-// Carries the velocity along itself: conservative 5th-order upwind fluxes on the staggered grid with 4th-order transport
-// velocity and deconvolved flux, Wicker-Skamarock RK3 (2002), the last pressure inside the stages; lower order beside
-// walls and cut faces. Stable to max(|u|+|v|) dt/h = 1.5: above 1.4 it takes sub-steps (up to four); beyond that a
-// Catmull-Rom semi-Lagrangian step with lagged pressure, stable at any size.
+// Carries the velocity along itself: conservative 5th-order upwind fluxes on the staggered grid with
+// 4th-order transport velocity and deconvolved flux, Wicker-Skamarock RK3 (2002), the last pressure inside
+// the stages; lower order beside walls and cut faces. Stable to max(|u|+|v|) dt/h = 1.5: above 1.4 it takes
+// sub-steps (up to four); beyond that a Catmull-Rom semi-Lagrangian step with lagged pressure, stable at any
+// size.
+//
+// What comes in through an open side has the velocity that is there already (no gradient across the side).
 #pragma once
 #include <functional>
 #include <memory>
@@ -11,10 +14,18 @@
 
 namespace smokebox {
 
+class VelocityExtension;
+
 class Advection {
  public:
   /// Makes a velocity of a middle stage roughly divergence-free.
   using RoughProjection = std::function<void(Field& u, Field& v)>;
+
+  /// What one call of advance() did.
+  struct Result {
+    double courant = 0;  // max(|u|+|v|) dt/h at the start of the step
+    int subSteps = 0;    // Runge-Kutta steps; 0: one semi-Lagrangian step
+  };
 
   Advection(const Boundary& boundary, ThreadPool& pool);
   ~Advection();
@@ -22,10 +33,16 @@ class Advection {
   /// Finds the faces that need the low-order path; needed when boundary.version has changed.
   void rebuild(const Boundary& boundary);
 
-  /// u, v: divergence-free velocity in; out: carried, with the accelerations (may be null) and the gradient of the lagged
-  /// `phi` (m/s, see PressureSolver; the impulse of one whole step of dt) applied, not yet projected.
-  void advance(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
-               const Field* accelerationV, double dt, const RoughProjection& projectRoughly);
+  /// u, v: divergence-free velocity in; out: carried, with the accelerations (may be null) and the gradient
+  /// of the lagged `phi` (m/s, see PressureSolver; the impulse of one whole step of dt) applied, not yet
+  /// projected. Closed faces and margins come out extended. A rough projection follows the second stage of
+  /// each sub-step and ends each but the last.
+  Result advance(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
+                 const Field* accelerationV, double dt, const RoughProjection& projectRoughly);
+
+  /// Fills the margins beyond the walls and the closed faces inside solids (see VelocityExtension), by the
+  /// lists of the last rebuild(), with the wall velocities of `boundary`.
+  void extend(const Boundary& boundary, Field& u, Field& v) const;
 
   std::size_t bytes() const;
 
@@ -34,8 +51,7 @@ class Advection {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Fills the margins beyond the walls and the closed faces near the surface (inside solids) with what the stencils need:
-/// wall velocity along the normal, tangential velocity extended from the fluid and mixed with the wall's by its drag.
+/// VelocityExtension built for one use: for setting up and for tests; a step uses Advection::extend.
 void extendVelocity(const Boundary& boundary, Field& u, Field& v);
 
 }  // namespace smokebox

@@ -1,5 +1,5 @@
-// Implicit viscosity with cut links to the wall (Gibou 2002): symmetric positive definite, second order in the velocity
-// on curved and moving solids. Each component is solved by itself, by conjugate gradients.
+// Implicit viscosity with cut links to the wall (Gibou 2002): symmetric positive definite, second order in
+// the velocity on curved and moving solids. Each component is solved by itself, by conjugate gradients.
 #pragma once
 #include <memory>
 
@@ -26,8 +26,8 @@ class Viscosity {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The share of the tangential velocity that a surface and an inviscid fluid have in common, applied to the faces whose
-/// links end on a surface (without viscosity there is no boundary layer to do it).
+/// The share of the tangential velocity that a surface and an inviscid fluid have in common, applied to the
+/// faces whose links end on a surface (without viscosity there is no boundary layer to do it).
 void applySurfaceDrag(const Boundary& boundary, Field& u, Field& v);
 
 }  // namespace smokebox

@@ -1,0 +1,165 @@
+#include "fluid/advection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/advection_kernel.h"
+#include "fluid/advection_near.h"
+#include "fluid/extend.h"
+#include "fluid/semi_lagrangian.h"
+
+namespace smokebox {
+
+namespace {
+
+constexpr int kRowGrain = 32;
+constexpr double kLargestCourant = 1.4;
+constexpr int kMostSubSteps = 4;
+
+}  // namespace
+
+struct Advection::Impl {
+  Impl(const Boundary& boundary, ThreadPool& threads)
+      : pool(threads),
+        extension(boundary, threads),
+        near(boundary),
+        u1(boundary.grid.nx, boundary.grid.ny),
+        v1(boundary.grid.nx, boundary.grid.ny),
+        u2(boundary.grid.nx, boundary.grid.ny),
+        v2(boundary.grid.nx, boundary.grid.ny) {
+    near.rebuild(boundary, extension);
+  }
+
+  void stage(const Boundary& boundary, const AdvectionStage& s) {
+    const int ny = boundary.grid.ny;
+    pool.blocks(0, ny, kRowGrain, [&](int begin, int end) {
+      advanceRowsOfU(s, begin, end);
+      advanceRowsOfV(s, begin, end);
+      // The last row of y-faces, on the upper side, goes with the block below it.
+      near.advanceRows(boundary, s, begin, end == ny && !s.periodicY ? ny + 1 : end);
+    });
+    extension.apply(boundary, *s.outU, *s.outV);
+  }
+
+  /// One Wicker-Skamarock step; u, v extended in and out.
+  void rungeKutta(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
+                  const Field* accelerationV, double dt, double phiShare,
+                  const RoughProjection& projectRoughly) {
+    AdvectionStage s;
+    s.baseU = &u, s.baseV = &v;
+    s.phi = &phi;
+    s.accelerationU = accelerationU, s.accelerationV = accelerationV;
+    s.periodicX = boundary.periodicX(), s.periodicY = boundary.periodicY();
+    auto run = [&](const Field& inU, const Field& inV, Field& outU, Field& outV, double share) {
+      s.u = &inU, s.v = &inV, s.outU = &outU, s.outV = &outV;
+      s.rateScale = static_cast<float>(share * dt / boundary.grid.h);
+      s.phiScale = static_cast<float>(share * phiShare);
+      s.accelerationScale = static_cast<float>(share * dt);
+      stage(boundary, s);
+    };
+    run(u, v, u1, v1, 1.0 / 3);
+    run(u1, v1, u2, v2, 1.0 / 2);
+    projectRoughly(u2, v2);
+    extension.apply(boundary, u2, v2);
+    run(u2, v2, u, v, 1);
+  }
+
+  /// u -= share grad phi - dt acceleration, on open faces.
+  void addImpulse(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
+                  const Field* accelerationV, double dt) {
+    const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+    const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
+    const auto seconds = static_cast<float>(dt);
+    pool.blocks(0, wrapY ? ny : ny + 1, kRowGrain, [&](int begin, int end) {
+      for (int j = begin; j < end; ++j) {
+        for (int i = 0; j < ny && i < (wrapX ? nx : nx + 1); ++i) {
+          if (!(boundary.openX(i, j) > 0)) continue;
+          const float ahead = i < nx ? phi(i, j) : 0.0f;
+          const float behind = i > 0 ? phi(i - 1, j) : wrapX ? phi(nx - 1, j) : 0.0f;
+          u(i, j) += (accelerationU ? seconds * (*accelerationU)(i, j) : 0.0f) - (ahead - behind);
+        }
+        for (int i = 0; i < nx; ++i) {
+          if (!(boundary.openY(i, j) > 0)) continue;
+          const float ahead = j < ny ? phi(i, j) : 0.0f;
+          const float behind = j > 0 ? phi(i, j - 1) : wrapY ? phi(i, ny - 1) : 0.0f;
+          v(i, j) += (accelerationV ? seconds * (*accelerationV)(i, j) : 0.0f) - (ahead - behind);
+        }
+      }
+    });
+  }
+
+  /// Largest |u|+|v| over the cells, each component from the faster of the cell's two faces.
+  double largestSpeed(const Boundary& boundary, const Field& u, const Field& v) {
+    const int nx = boundary.grid.nx;
+    return pool.max(0, boundary.grid.ny, kRowGrain, 0, [&](int begin, int end) {
+      float largest = 0;
+      for (int j = begin; j < end; ++j) {
+        const float *a = u.row(j), *b = v.row(j), *c = v.row(j + 1);
+#pragma omp simd reduction(max : largest)
+        for (int i = 0; i < nx; ++i) {
+          const float x = std::max(std::fabs(a[i]), std::fabs(a[i + 1]));
+          const float y = std::max(std::fabs(b[i]), std::fabs(c[i]));
+          largest = std::max(largest, x + y);
+        }
+      }
+      return static_cast<double>(largest);
+    });
+  }
+
+  ThreadPool& pool;
+  VelocityExtension extension;
+  NearFaces near;
+  Field u1, v1, u2, v2;  // after the first and the second stage
+};
+
+Advection::Advection(const Boundary& boundary, ThreadPool& pool)
+    : impl_(std::make_unique<Impl>(boundary, pool)) {}
+
+Advection::~Advection() = default;
+
+void Advection::rebuild(const Boundary& boundary) {
+  impl_->extension.rebuild(boundary);
+  impl_->near.rebuild(boundary, impl_->extension);
+}
+
+Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& v, const Field& phi,
+                                     const Field* accelerationU, const Field* accelerationV, double dt,
+                                     const RoughProjection& projectRoughly) {
+  Impl& m = *impl_;
+  m.extension.apply(boundary, u, v);
+  Result result;
+  result.courant = m.largestSpeed(boundary, u, v) * dt / boundary.grid.h;
+  if (result.courant <= kMostSubSteps * kLargestCourant) {
+    result.subSteps = std::max(1, static_cast<int>(std::ceil(result.courant / kLargestCourant)));
+    const double share = 1.0 / result.subSteps;
+    for (int k = 0; k < result.subSteps; ++k) {
+      m.rungeKutta(boundary, u, v, phi, accelerationU, accelerationV, share * dt, share, projectRoughly);
+      if (k + 1 == result.subSteps) break;
+      projectRoughly(u, v);
+      m.extension.apply(boundary, u, v);
+    }
+    return result;
+  }
+  carrySemiLagrangian(boundary, u, v, dt, m.extension.anySolid(), m.pool, m.u1, m.v1);
+  m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt);
+  m.extension.apply(boundary, m.u1, m.v1);
+  u.swap(m.u1);
+  v.swap(m.v1);
+  return result;
+}
+
+void Advection::extend(const Boundary& boundary, Field& u, Field& v) const {
+  impl_->extension.apply(boundary, u, v);
+}
+
+std::size_t Advection::bytes() const {
+  return impl_->extension.bytes() + impl_->near.bytes() + impl_->u1.bytes() + impl_->v1.bytes() +
+         impl_->u2.bytes() + impl_->v2.bytes();
+}
+
+void extendVelocity(const Boundary& boundary, Field& u, Field& v) {
+  ThreadPool pool(1);
+  VelocityExtension(boundary, pool).apply(boundary, u, v);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,216 @@
+#include "fluid/advection_near.h"
+
+#include <cstring>
+
+namespace smokebox {
+
+namespace {
+
+// What a stencil may do with the value on a face.
+constexpr std::uint8_t kUnusable = 0;  // deep inside a solid or far beyond a wall
+constexpr std::uint8_t kExtended = 1;  // extended from the fluid: the outer points of third order
+constexpr std::uint8_t kKnown = 2;     // cut by a surface, or in the plane of a wall
+constexpr std::uint8_t kRegular = 3;   // fully open, or the image of such a face by symmetry or period
+
+constexpr int kReach = 4;      // of the high-order stencil along the direction of a flux
+constexpr int kMapMargin = 8;  // columns of the margin that are filled
+
+void continueUse(WallKind kind, bool normal, std::uint8_t* f, std::ptrdiff_t step, int count, int last) {
+  for (int k = 1; k <= count; ++k) {
+    const int image = std::min(normal ? k : k - 1, last);
+    if (kind == WallKind::slip)
+      f[-k * step] = f[image * step];
+    else if (kind == WallKind::open)
+      f[-k * step] = kExtended;
+    else
+      f[-k * step] = k <= 2 ? kExtended : kUnusable;
+  }
+}
+
+}  // namespace
+
+NearFaces::NearFaces(const Boundary& boundary) {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  u_.use = FaceMap(nx, ny);
+  v_.use = FaceMap(nx, ny);
+  u_.rowBegin.assign(ny + 2, 0);
+  v_.rowBegin.assign(ny + 2, 0);
+  irregular_.assign(nx + 1, 0);
+}
+
+void NearFaces::rebuild(const Boundary& boundary, const VelocityExtension& extension) {
+  findUse(boundary, extension, true, u_.use);
+  findUse(boundary, extension, false, v_.use);
+  findFaces(boundary, true);
+  findFaces(boundary, false);
+}
+
+void NearFaces::findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX,
+                        FaceMap& use) const {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
+  const int columns = alongX ? nx + 1 : nx, rows = alongX ? ny : ny + 1;
+  const Field& open = alongX ? boundary.openX : boundary.openY;
+  const FaceMap& layer = alongX ? extension.layerU() : extension.layerV();
+  auto planeUse = [](WallKind kind) { return kind == WallKind::slip ? kRegular : kKnown; };
+
+  for (int j = 0; j < rows; ++j) {
+    std::uint8_t* row = use.row(j);
+    const float* o = open.row(j);
+    const std::uint8_t* depth = layer.row(j);
+    for (int i = 0; i < columns; ++i) {
+      const std::uint8_t closed = depth[i] == 2 || depth[i] == 3 ? kExtended : kUnusable;
+      row[i] = o[i] >= 1 ? kRegular : o[i] > 0 ? kKnown : closed;
+    }
+    if (alongX && !wrapX) {
+      if (!(o[0] > 0)) row[0] = planeUse(boundary.side(Side::left).kind);
+      if (!(o[nx] > 0)) row[nx] = planeUse(boundary.side(Side::right).kind);
+    }
+    if (!alongX && !wrapY && (j == 0 || j == ny)) {
+      const std::uint8_t plane = planeUse(boundary.side(j == 0 ? Side::bottom : Side::top).kind);
+      for (int i = 0; i < columns; ++i)
+        if (!(o[i] > 0)) row[i] = plane;
+    }
+    if (wrapX) {
+      for (int k = 1; k <= kMapMargin; ++k) row[-k] = row[std::max(nx - k, 0)];
+      for (int k = 0; k <= kMapMargin; ++k) row[nx + k] = row[std::min(k, nx - 1)];
+    } else {
+      continueUse(boundary.side(Side::left).kind, alongX, row, 1, kMapMargin, columns - 1);
+      continueUse(boundary.side(Side::right).kind, alongX, row + columns - 1, -1, kMapMargin, columns - 1);
+    }
+  }
+  const int begin = -kMapMargin, end = nx + kMapMargin + 1;
+  if (wrapY) {
+    for (int k = 1; k <= Field::kMarginY; ++k)
+      std::memcpy(use.row(-k) + begin, use.row(std::max(ny - k, 0)) + begin, end - begin);
+    for (int k = 0; k < Field::kMarginY; ++k)
+      std::memcpy(use.row(ny + k) + begin, use.row(std::min(k, ny - 1)) + begin, end - begin);
+    return;
+  }
+  const std::ptrdiff_t stride = use.row(1) - use.row(0);
+  for (int i = begin; i < end; ++i) {
+    continueUse(boundary.side(Side::bottom).kind, !alongX, use.row(0) + i, stride, Field::kMarginY, rows - 1);
+    continueUse(boundary.side(Side::top).kind, !alongX, use.row(rows - 1) + i, -stride,
+                Field::kMarginY - (alongX ? 0 : 1), rows - 1);
+  }
+}
+
+void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
+  Component& c = alongX ? u_ : v_;
+  const FaceMap& other = alongX ? v_.use : u_.use;
+  const Field& open = alongX ? boundary.openX : boundary.openY;
+  const int columns = alongX && !wrapX ? nx + 1 : nx, rows = !alongX && !wrapY ? ny + 1 : ny;
+  auto wet = [&](Side s) {  // a closed wall whose tangential velocity the flow feels
+    const WallKind kind = boundary.side(s).kind;
+    return kind == WallKind::noSlip || kind == WallKind::inflow;
+  };
+
+  c.faces.clear();
+  for (int j = 0; j <= ny + 1; ++j) {
+    c.rowBegin[j] = static_cast<int>(c.faces.size());
+    if (j >= rows) continue;
+    std::uint8_t* irregular = irregular_.data();
+    std::memset(irregular, 0, static_cast<std::size_t>(columns));
+    auto mark = [&](const std::uint8_t* use) {
+      for (int i = 0; i < columns; ++i) irregular[i] |= static_cast<std::uint8_t>(use[i] ^ kRegular);
+    };
+    for (int k = -kReach; k <= kReach; ++k) {
+      mark(c.use.row(j) + k);
+      if (j + k < ny + Field::kMarginY) mark(c.use.row(j + k));
+    }
+    for (int b = 0; b < 4; ++b)
+      for (int a = 0; a < 4; ++a) mark(alongX ? other.row(j - 1 + b) + a - 2 : other.row(j - 2 + b) + a - 1);
+
+    const float* o = open.row(j);
+    for (int i = 0; i < columns; ++i) {
+      if (!irregular[i] || !(o[i] > 0)) continue;
+      Face face;
+      face.i = i;
+      if (o[i] < 0.5f) {
+        face.order = {first, first, first, first};
+      } else {
+        const bool left = !alongX && i == 0 && wet(Side::left),
+                   right = !alongX && i == nx - 1 && wet(Side::right);
+        const bool below = alongX && j == 0 && wet(Side::bottom),
+                   above = alongX && j == ny - 1 && wet(Side::top);
+        face.order = {orderBetween(c.use, i - 1, j, 1, 0, left), orderBetween(c.use, i, j, 1, 0, right),
+                      orderBetween(c.use, i, j - 1, 0, 1, below), orderBetween(c.use, i, j, 0, 1, above)};
+      }
+      c.faces.push_back(face);
+    }
+  }
+}
+
+NearFaces::Order NearFaces::orderBetween(const FaceMap& use, int i, int j, int di, int dj,
+                                         bool atWall) const {
+  auto at = [&](int k) { return use(i + k * di, j + k * dj); };
+  if (atWall) return inward;
+  if (std::min(at(0), at(1)) < kKnown || std::min(at(-1), at(2)) < kExtended) return first;
+  const bool regular = std::min({at(-2), at(-1), at(0), at(1), at(2), at(3)}) == kRegular;
+  return regular ? fifth : third;
+}
+
+void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, int begin, int end) const {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const std::ptrdiff_t stride = s.u->stride();
+
+  // U (value at the flux point - q); p: the lower face of the flux point, `own`: which of p[0], p[step] is
+  // the face.
+  auto term = [](Order order, const float* p, std::ptrdiff_t step, int own, float U) {
+    const float q = p[own * step];
+    float value = q;
+    if (order == fifth) {
+      value = fifthOrder(p[-2 * step], p[-step], p[0], p[step], p[2 * step], p[3 * step], U);
+    } else if (order == third) {
+      value = thirdOrder(p[-step], p[0], p[step], p[2 * step], U);
+    } else if (own == 1 ? U > 0 : U < 0) {  // the flow comes from the other side
+      value = order == inward ? thirdOrder(p[-step], p[0], p[step], p[2 * step], U) : p[(1 - own) * step];
+    }
+    return U * (value - q);
+  };
+  auto advanced = [&](float base, float rate, float gradient, const float* acceleration) {
+    const float impulse = (acceleration ? s.accelerationScale * *acceleration : 0.0f) - s.phiScale * gradient;
+    return base + (impulse - s.rateScale * rate);
+  };
+
+  for (int j = begin; j < std::min(end, ny); ++j)
+    for (int k = u_.rowBegin[j]; k < u_.rowBegin[j + 1]; ++k) {
+      const Face& f = u_.faces[k];
+      const int i = f.i;
+      const float *q = s.u->row(j) + i, *v = s.v->row(j) + i;
+      const float left = 0.5f * (q[-1] + q[0]), right = 0.5f * (q[0] + q[1]);
+      const float below = 0.5f * (v[-1] + v[0]), above = 0.5f * (v[stride - 1] + v[stride]);
+      const float x = term(f.order[1], q, 1, 0, right) - term(f.order[0], q - 1, 1, 1, left);
+      const float y = term(f.order[3], q, stride, 0, above) - term(f.order[2], q - stride, stride, 1, below);
+      const float* phi = s.phi->row(j);
+      const float ahead = i < nx ? phi[i] : 0.0f;
+      const float behind = i > 0 ? phi[i - 1] : s.periodicX ? phi[nx - 1] : 0.0f;
+      (*s.outU)(i, j) = advanced((*s.baseU)(i, j), x + y, ahead - behind,
+                                 s.accelerationU ? s.accelerationU->row(j) + i : nullptr);
+    }
+  for (int j = begin; j < end; ++j)
+    for (int k = v_.rowBegin[j]; k < v_.rowBegin[j + 1]; ++k) {
+      const Face& f = v_.faces[k];
+      const int i = f.i;
+      const float *q = s.v->row(j) + i, *u = s.u->row(j) + i;
+      const float below = 0.5f * (q[-stride] + q[0]), above = 0.5f * (q[0] + q[stride]);
+      const float left = 0.5f * (u[-stride] + u[0]), right = 0.5f * (u[1 - stride] + u[1]);
+      const float x = term(f.order[1], q, 1, 0, right) - term(f.order[0], q - 1, 1, 1, left);
+      const float y = term(f.order[3], q, stride, 0, above) - term(f.order[2], q - stride, stride, 1, below);
+      const float ahead = j < ny ? (*s.phi)(i, j) : 0.0f;
+      const float behind = j > 0 ? (*s.phi)(i, j - 1) : s.periodicY ? (*s.phi)(i, ny - 1) : 0.0f;
+      (*s.outV)(i, j) = advanced((*s.baseV)(i, j), x + y, ahead - behind,
+                                 s.accelerationV ? s.accelerationV->row(j) + i : nullptr);
+    }
+}
+
+std::size_t NearFaces::bytes() const {
+  std::size_t total = irregular_.capacity();
+  for (const Component* c : {&u_, &v_})
+    total += c->faces.capacity() * sizeof(Face) + c->rowBegin.capacity() * sizeof(int) + c->use.bytes();
+  return total;
+}
+
+}  // namespace smokebox

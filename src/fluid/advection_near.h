@@ -1,0 +1,56 @@
+// The faces whose stencils meet a wall, a solid or an open side, and their rates by lower orders.
+//
+// A near face uses the advective form, the sum over its four flux points of U (q_point - q): equal to the
+// flux form where the plain averages U are divergence-free, exactly 0 in a uniform flow beside a solid (where
+// only the share-weighted fluxes are), and without a limit from small cut cells. Each point takes the highest
+// order its neighbours allow:
+//   fifth   six faces away from any wall
+//   third   four faces of which the inner two are open and the outer two at least extended
+//   inward  a tangential component at the domain's wall: third order through the wall's velocity if the flow
+//   comes in,
+//           the face's own value if it goes out
+//   first   upwind
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fluid/advection_kernel.h"
+#include "fluid/boundary.h"
+#include "fluid/extend.h"
+
+namespace smokebox {
+
+class NearFaces {
+ public:
+  explicit NearFaces(const Boundary& boundary);
+
+  void rebuild(const Boundary& boundary, const VelocityExtension& extension);
+
+  /// Overwrites what the whole-row kernel wrote on near faces of rows [begin, end); row ny is v's last.
+  void advanceRows(const Boundary& boundary, const AdvectionStage& stage, int begin, int end) const;
+
+  std::size_t count() const { return u_.faces.size() + v_.faces.size(); }
+  std::size_t bytes() const;
+
+ private:
+  enum Order : std::uint8_t { first, third, fifth, inward };
+  struct Face {
+    int i = 0;
+    std::array<Order, 4> order{};  // at the flux points before and after it along x, then along y
+  };
+  struct Component {
+    std::vector<Face> faces;
+    std::vector<int> rowBegin;  // faces of row j: [rowBegin[j], rowBegin[j + 1])
+    FaceMap use;                // what a stencil may do with a face's value, see the .cpp
+  };
+
+  void findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX, FaceMap& use) const;
+  void findFaces(const Boundary& boundary, bool alongX);
+  Order orderBetween(const FaceMap& use, int i, int j, int di, int dj, bool atWall) const;
+
+  Component u_, v_;
+  std::vector<std::uint8_t> irregular_;  // scratch of one row
+};
+
+}  // namespace smokebox

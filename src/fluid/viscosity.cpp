@@ -1,0 +1,300 @@
+#include "fluid/viscosity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace smokebox {
+
+namespace {
+
+constexpr int kRowGrain = 16;
+constexpr int kMostIterations = 600;
+constexpr double kTolerance = 1e-6;  // largest residual over the largest velocity
+constexpr float kShortestLink = 1e-3f;
+constexpr int kLanes = 8;  // sums go over fixed lanes, so that they do not depend on the instruction set
+
+/// One component's matrix: diagonal 1 + c (wallWeight + links to neighbours), c = nu dt / h^2.
+struct System {
+  bool alongX = true;
+  int columns = 0, rows = 0;  // unknowns; a period is counted once
+  Field toRight,
+      toAbove;  // weight of the link to the next face along x and y: 1 or 0; toRight(-1), toAbove(., -1) wrap
+  Field wallWeight;               // sum of the cut links' weights
+  std::vector<float> linkWeight;  // of each of the boundary's links
+  Field unknown;                  // 1 on open faces, 0 elsewhere
+};
+
+}  // namespace
+
+struct Viscosity::Impl {
+  Impl(const Boundary& boundary, ThreadPool& threads) : pool(threads) {
+    const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+    for (System* s : {&systemU, &systemV}) {
+      s->alongX = s == &systemU;
+      for (Field* f : {&s->toRight, &s->toAbove, &s->wallWeight, &s->unknown}) *f = Field(nx, ny);
+    }
+    for (Field* f : {&diagonal, &residual, &direction, &product}) *f = Field(nx, ny);
+    wrapX = boundary.periodicX();
+    wrapY = boundary.periodicY();
+    rebuild(boundary, systemU);
+    rebuild(boundary, systemV);
+  }
+
+  void rebuild(const Boundary& boundary, System& s);
+  Result solve(const Boundary& boundary, const System& s, Field& x, double c);
+
+  template <class Row>
+  double sum(const System& s, Row&& row) {
+    return pool.sum(0, s.rows, kRowGrain, [&](int begin, int end) {
+      double total = 0;
+      for (int j = begin; j < end; ++j) total += row(j);
+      return total;
+    });
+  }
+
+  /// Repeats a periodic field beyond its period, as far as the five-point stencil reaches.
+  void wrap(const System& s, Field& f) const {
+    if (wrapX)
+      for (int j = 0; j < s.rows; ++j) {
+        float* row = f.row(j);
+        row[-1] = row[s.columns - 1];
+        row[s.columns] = row[0];
+      }
+    if (wrapY) {
+      std::copy_n(f.row(s.rows - 1) - 1, s.columns + 2, f.row(-1) - 1);
+      std::copy_n(f.row(0) - 1, s.columns + 2, f.row(s.rows) - 1);
+    }
+  }
+
+  /// out = A p on row j.
+  void applyRow(const System& s, const Field& p, float c, int j, float* __restrict out) const {
+    const float *q = p.row(j), *above = p.row(j + 1), *below = p.row(j - 1), *d = diagonal.row(j);
+    const float *right = s.toRight.row(j), *up = s.toAbove.row(j), *down = s.toAbove.row(j - 1);
+#pragma omp simd
+    for (int i = 0; i < s.columns; ++i)
+      out[i] = d[i] * q[i] - c * ((right[i - 1] * q[i - 1] + right[i] * q[i + 1]) +
+                                  (down[i] * below[i] + up[i] * above[i]));
+  }
+
+  ThreadPool& pool;
+  bool wrapX = false, wrapY = false;
+  System systemU, systemV;
+  Field diagonal, residual, direction, product;
+};
+
+namespace {
+
+/// Sum of a b d over a row, in double.
+template <class Term>
+double rowSum(int count, Term&& term) {
+  double lanes[kLanes] = {};
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes)
+    for (int k = 0; k < kLanes; ++k) lanes[k] += term(i + k);
+  for (int k = 0; i + k < count; ++k) lanes[k] += term(i + k);
+  return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
+}
+
+float linkWeightOf(const CutLink& link) {
+  return std::clamp(link.drag, 0.0f, 1.0f) / std::max(link.theta, kShortestLink);
+}
+
+}  // namespace
+
+void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const Field& open = s.alongX ? boundary.openX : boundary.openY;
+  s.columns = s.alongX && !wrapX ? nx + 1 : nx;
+  s.rows = !s.alongX && !wrapY ? ny + 1 : ny;
+  auto isOpen = [&](int i, int j) {
+    if (i >= s.columns) {
+      if (!wrapX) return false;
+      i -= s.columns;
+    }
+    if (j >= s.rows) {
+      if (!wrapY) return false;
+      j -= s.rows;
+    }
+    return open(i, j) > 0;
+  };
+  pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j)
+      for (int i = 0; i < s.columns; ++i) {
+        const bool here = open(i, j) > 0;
+        s.unknown(i, j) = here ? 1.0f : 0.0f;
+        s.toRight(i, j) = here && isOpen(i + 1, j) ? 1.0f : 0.0f;
+        s.toAbove(i, j) = here && isOpen(i, j + 1) ? 1.0f : 0.0f;
+        s.wallWeight(i, j) = 0;
+      }
+  });
+
+  // A link that a surface cuts does not reach its neighbour, even where that is open (a thin wall between
+  // them).
+  const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
+  s.linkWeight.assign(links.size(), 0.0f);
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    const CutLink& link = links[k];
+    if (link.i >= s.columns || link.j >= s.rows || !(open(link.i, link.j) > 0)) continue;
+    s.linkWeight[k] = linkWeightOf(link);
+    s.wallWeight(link.i, link.j) += s.linkWeight[k];
+    int i = link.di < 0 ? link.i - 1 : link.i, j = link.dj < 0 ? link.j - 1 : link.j;
+    if (i < 0) i += wrapX ? s.columns : 0;
+    if (j < 0) j += wrapY ? s.rows : 0;
+    (link.di != 0 ? s.toRight : s.toAbove)(i, j) = 0;
+  }
+  wrap(s, s.toRight);
+  wrap(s, s.toAbove);
+}
+
+Viscosity::Result Viscosity::Impl::solve(const Boundary& boundary, const System& s, Field& x,
+                                         double coefficient) {
+  const auto c = static_cast<float>(coefficient);
+  const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
+  const int n = s.columns;
+
+  // Right side: the velocity before, and what the walls give. Closed faces: diagonal 1 and no residual.
+  float walls = 0;
+  pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      const float *right = s.toRight.row(j), *up = s.toAbove.row(j), *down = s.toAbove.row(j - 1),
+                  *w = s.wallWeight.row(j);
+      float* d = diagonal.row(j);
+#pragma omp simd
+      for (int i = 0; i < n; ++i) d[i] = 1 + c * (((right[i - 1] + right[i]) + (down[i] + up[i])) + w[i]);
+      std::copy_n(x.row(j), n, residual.row(j));
+    }
+  });
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (s.linkWeight[k] == 0) continue;
+    residual(links[k].i, links[k].j) += c * s.linkWeight[k] * links[k].velocity;
+    walls = std::max(walls, std::fabs(links[k].velocity));
+  }
+
+  // The residual of what was there is small only for a small c; it is as good a start as any.
+  wrap(s, x);
+  const double largest = pool.max(0, s.rows, kRowGrain, walls, [&](int begin, int end) {
+    float m = 0;
+    for (int j = begin; j < end; ++j) {
+      const float *q = x.row(j), *known = s.unknown.row(j);
+#pragma omp simd reduction(max : m)
+      for (int i = 0; i < n; ++i) m = std::max(m, known[i] * std::fabs(q[i]));
+    }
+    return static_cast<double>(m);
+  });
+  double rho = sum(s, [&](int j) {
+    float *r = residual.row(j), *z = direction.row(j), *a = product.row(j);
+    const float *d = diagonal.row(j), *known = s.unknown.row(j);
+    applyRow(s, x, c, j, a);
+#pragma omp simd
+    for (int i = 0; i < n; ++i) {
+      r[i] = known[i] * (r[i] - a[i]);
+      z[i] = r[i] / d[i];
+    }
+    return rowSum(n, [&](int i) { return static_cast<double>(r[i]) * z[i]; });
+  });
+
+  auto largestResidual = [&] {
+    return pool.max(0, s.rows, kRowGrain, 0, [&](int begin, int end) {
+      float m = 0;
+      for (int j = begin; j < end; ++j) {
+        const float *r = residual.row(j), *d = diagonal.row(j);
+#pragma omp simd reduction(max : m)
+        for (int i = 0; i < n; ++i) m = std::max(m, std::fabs(r[i]) / d[i]);
+      }
+      return static_cast<double>(m);
+    });
+  };
+
+  Result result;
+  const double enough = kTolerance * largest;
+  for (;;) {
+    if (!(rho > 0) || largestResidual() <= enough) {
+      result.converged = rho >= 0;
+      break;
+    }
+    if (result.iterations == kMostIterations) break;
+    ++result.iterations;
+    wrap(s, direction);
+    const double curvature = sum(s, [&](int j) {
+      float *p = direction.row(j), *a = product.row(j);
+      applyRow(s, direction, c, j, a);
+      return rowSum(n, [&](int i) { return static_cast<double>(p[i]) * a[i]; });
+    });
+    if (!(curvature > 0)) break;
+    const auto alpha = static_cast<float>(rho / curvature);
+    const double last = rho;
+    rho = sum(s, [&](int j) {
+      float *q = x.row(j), *r = residual.row(j);
+      const float *p = direction.row(j), *a = product.row(j), *d = diagonal.row(j);
+#pragma omp simd
+      for (int i = 0; i < n; ++i) {
+        q[i] += alpha * p[i];
+        r[i] -= alpha * a[i];
+      }
+      return rowSum(n, [&](int i) { return static_cast<double>(r[i]) * (r[i] / d[i]); });
+    });
+    const auto beta = static_cast<float>(rho / last);
+    pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
+      for (int j = begin; j < end; ++j) {
+        float* p = direction.row(j);
+        const float *r = residual.row(j), *d = diagonal.row(j);
+#pragma omp simd
+        for (int i = 0; i < n; ++i) p[i] = r[i] / d[i] + beta * p[i];
+      }
+    });
+  }
+  // A period's first row or column is repeated at its end.
+  if (s.alongX && wrapX)
+    for (int j = 0; j < s.rows; ++j) x(s.columns, j) = x(0, j);
+  if (!s.alongX && wrapY) std::copy_n(x.row(0), n, x.row(s.rows));
+  return result;
+}
+
+Viscosity::Viscosity(const Boundary& boundary, ThreadPool& pool)
+    : impl_(std::make_unique<Impl>(boundary, pool)) {}
+
+Viscosity::~Viscosity() = default;
+
+void Viscosity::rebuild(const Boundary& boundary) {
+  impl_->rebuild(boundary, impl_->systemU);
+  impl_->rebuild(boundary, impl_->systemV);
+}
+
+Viscosity::Result Viscosity::diffuse(const Boundary& boundary, Field& u, Field& v, double viscosity,
+                                     double dt) {
+  const double c = viscosity * dt / (boundary.grid.h * boundary.grid.h);
+  const Result a = impl_->solve(boundary, impl_->systemU, u, c),
+               b = impl_->solve(boundary, impl_->systemV, v, c);
+  return {std::max(a.iterations, b.iterations), a.converged && b.converged};
+}
+
+std::size_t Viscosity::bytes() const {
+  std::size_t total = 0;
+  for (const System* s : {&impl_->systemU, &impl_->systemV})
+    total += s->toRight.bytes() + s->toAbove.bytes() + s->wallWeight.bytes() + s->unknown.bytes() +
+             s->linkWeight.capacity() * sizeof(float);
+  for (const Field* f : {&impl_->diagonal, &impl_->residual, &impl_->direction, &impl_->product})
+    total += f->bytes();
+  return total;
+}
+
+void applySurfaceDrag(const Boundary& boundary, Field& u, Field& v) {
+  // A surface takes along the faces that it cuts: all of the velocity at no distance, none of it a cell away.
+  // The links of a face are together; the one that takes the most decides.
+  auto apply = [](const std::vector<CutLink>& links, const Field& open, Field& f) {
+    for (std::size_t k = 0; k < links.size();) {
+      const int i = links[k].i, j = links[k].j;
+      float share = 0, wall = 0;
+      for (; k < links.size() && links[k].i == i && links[k].j == j; ++k) {
+        const float s = std::clamp(links[k].drag, 0.0f, 1.0f) * (1 - std::clamp(links[k].theta, 0.0f, 1.0f));
+        if (s > share) share = s, wall = links[k].velocity;
+      }
+      if (open(i, j) > 0) f(i, j) += share * (wall - f(i, j));
+    }
+  };
+  apply(boundary.linksU, boundary.openX, u);
+  apply(boundary.linksV, boundary.openY, v);
+}
+
+}  // namespace smokebox
