@@ -145,6 +145,9 @@ struct SceneSpec {
   OutputSpec output;
   MethodSpec method;
 
+  /// Colours of sources that events set later on.
+  std::vector<Color> laterSmokeColors;
+
   /// All colours of smoke that can ever appear (sources and bursts), each once, in the order of the file.
   std::vector<Color> smokeColors() const;
 };

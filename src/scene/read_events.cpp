@@ -1,0 +1,176 @@
+// events
+#include <algorithm>
+
+#include "scene/read_shape.h"
+#include "scene/sections.h"
+
+namespace smokebox {
+namespace {
+
+/// When an event happens, and where its actions go: one action each.
+struct EventReader {
+  MapReader& map;
+  SceneSpec& spec;
+  EventSpec when;
+
+  Reader& reader() { return map.reader(); }
+  std::string name(const std::string& key) const { return inside(map.name(), key); }
+  template <class Action>
+  void add(Action action) {
+    EventSpec event = when;
+    event.action = std::move(action);
+    spec.events.push_back(std::move(event));
+  }
+};
+
+void readTimes(EventReader& event) {
+  MapReader& map = event.map;
+  EventSpec& when = event.when;
+  const bool once = map.has("at"), repeated = map.has("every");
+  if (once && repeated)
+    event.reader().error(map.keyMark("every"), "`at` and `every` at once",
+                         "at: once; every, from, until: again and again");
+  if (!once && !repeated && map.isMap())
+    event.reader().error(map.mark(), "`" + map.name() + "` has no time", "at: 2, or every: 1");
+  map.number("at", when.first, kNotNegative);
+  if (repeated || !once) {
+    map.number("every", when.every, kPositive);
+    map.number("from", when.first, kNotNegative);
+    if (map.number("until", when.until, kNotNegative) && when.until < when.first)
+      event.reader().error(map.find("until")->mark, "`" + map.name() + "` ends before it starts");
+  } else {
+    map.find("every");
+    for (const char* key : {"from", "until"}) {
+      map.find(key);
+      if (map.has(key))
+        event.reader().error(map.keyMark(key), "`" + std::string(key) + "` goes with `every`");
+    }
+  }
+  if (when.first > event.spec.time.duration)
+    event.reader().warning(map.keyMark(once ? "at" : "from"), "this event lies after the end of the scene");
+}
+
+void readSet(EventReader& event, const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::map || node.entries.empty()) {
+    event.reader().error(
+        node.mark, "`" + event.name("set") + "` must be a map of paths and values, got " + node.description(),
+        "set: {fluid.vorticity: 0}");
+    return;
+  }
+  for (const YamlEntry& entry : node.entries)
+    event.add(SetAction{entry.key, yamlText(*entry.value), entry.mark.place()});
+}
+
+void needFluid(EventReader& event, const YamlNode& node, const char* what) {
+  if (!event.spec.hasFluid)
+    event.reader().error(node.mark, "a " + std::string(what) + " needs a fluid, and this scene has none",
+                         "add `fluid: {}` or `smoke: {}`");
+}
+
+void readBurst(EventReader& event, const YamlNode& node) {
+  MapReader map(event.reader(), node, event.name("burst"));
+  BurstAction burst;
+  const auto shape = readPlacedShape(map);
+  map.number("smoke", burst.smoke, kNotNegative);
+  map.color("color", burst.color);
+  map.finish();
+  needFluid(event, node, "burst");
+  if (!shape) return;
+  burst.shape = *shape;
+  event.add(std::move(burst));
+}
+
+void readForce(EventReader& event, const YamlNode& node) {
+  MapReader map(event.reader(), node, event.name("force"));
+  ForceAction force;
+  const auto shape = readPlacedShape(map);
+  if (map.required("acceleration", "[x, y], m/s^2")) map.vector("acceleration", force.acceleration);
+  map.number("for", force.duration, kNotNegative);
+  map.finish();
+  needFluid(event, node, "force");
+  if (!shape) return;
+  force.shape = *shape;
+  event.add(std::move(force));
+}
+
+/// One name or a list of them.
+template <class Make>
+void readNames(EventReader& event, const YamlNode& node, const std::string& key, Make make) {
+  auto one = [&](const YamlNode& item, const std::string& called) {
+    if (const auto solid = event.reader().text(item, called))
+      if (checkSolidName(event.reader(), item, event.spec, *solid)) event.add(make(*solid));
+  };
+  if (node.kind != YamlNode::Kind::list) return one(node, event.name(key));
+  for (std::size_t k = 0; k < node.items.size(); ++k)
+    one(*node.items[k], inside(event.name(key), std::to_string(k)));
+}
+
+void readShow(EventReader& event, const YamlNode& node) {
+  readNames(event, node, "show", [](const std::string& solid) { return VisibilityAction{solid, true}; });
+}
+void readHide(EventReader& event, const YamlNode& node) {
+  readNames(event, node, "hide", [](const std::string& solid) { return VisibilityAction{solid, false}; });
+}
+void readStop(EventReader& event, const YamlNode& node) {
+  readNames(event, node, "stop", [](const std::string& solid) { return StopAction{solid}; });
+}
+
+void readCaption(EventReader& event, const YamlNode& node) {
+  CaptionAction caption;
+  if (node.kind == YamlNode::Kind::map) {
+    MapReader map(event.reader(), node, event.name("caption"));
+    if (map.required("text")) map.text("text", caption.text);
+    map.number("for", caption.duration, kPositive);
+    map.finish();
+  } else if (const auto text = event.reader().text(node, event.name("caption"))) {
+    caption.text = *text;
+  }
+  event.add(std::move(caption));
+}
+
+struct ActionKind {
+  const char* key;
+  void (*read)(EventReader& event, const YamlNode& node);
+};
+constexpr ActionKind kActions[] = {{"set", readSet},        {"burst", readBurst}, {"force", readForce},
+                                   {"show", readShow},      {"hide", readHide},   {"stop", readStop},
+                                   {"caption", readCaption}};
+constexpr const char* kNotYet[] = {"impulse", "pull"};
+
+void readEvent(Reader& reader, const YamlNode& node, const std::string& name, SceneSpec& spec) {
+  MapReader map(reader, node, name);
+  EventReader event{map, spec, {}};
+  readTimes(event);
+  int actions = 0;
+  std::string all;
+  for (const ActionKind& kind : kActions) {
+    all += (all.empty() ? "" : ", ") + std::string(kind.key);
+    const YamlNode* found = map.find(kind.key);
+    if (!map.has(kind.key)) continue;
+    if (++actions > 1)
+      reader.error(map.keyMark(kind.key), "a second action in one event", "make it an event of its own");
+    if (found)
+      kind.read(event, *found);
+    else
+      reader.error(map.keyMark(kind.key), "`" + inside(name, kind.key) + "` has no value");
+  }
+  for (const char* key : kNotYet) {
+    map.unsupported(key);
+    actions += map.has(key);
+  }
+  const std::size_t before = reader.errors();
+  map.finish();
+  if (actions == 0 && map.isMap() && reader.errors() == before)
+    reader.error(map.mark(), "`" + name + "` does nothing", "one of " + all);
+}
+
+}  // namespace
+
+void readEvents(MapReader& scene, SceneSpec& spec) {
+  const YamlNode* node = scene.find("events");
+  if (!node || !scene.reader().isList(*node, "events")) return;
+  for (std::size_t k = 0; k < node->items.size(); ++k)
+    readEvent(scene.reader(), *node->items[k], "events." + std::to_string(k), spec);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,155 @@
+// view: layers, captions, background, camera
+#include <algorithm>
+
+#include "scene/nearest.h"
+#include "scene/sections.h"
+
+namespace smokebox {
+namespace {
+
+// What may stand beside each layer's name; `kind` is empty for what a scene of this version never has: such a
+// layer is taken, and draws nothing.
+enum Option : unsigned { opacity = 1, range = 2, bar = 4, spacing = 8, scale = 16, color = 32 };
+constexpr unsigned kAll = opacity | range | bar | spacing | scale | color;
+
+struct LayerEntry {
+  const char* key;
+  std::optional<LayerKind> kind;
+  unsigned options;
+};
+constexpr LayerEntry kLayers[] = {
+    {"smoke", LayerKind::smoke, opacity},
+    {"solids", LayerKind::solids, opacity | color},
+    {"pressure", LayerKind::pressure, opacity | range | bar},
+    {"vorticity", LayerKind::vorticity, opacity | range | bar},
+    {"speed", LayerKind::speed, opacity | range | bar},
+    {"velocity", LayerKind::velocity, opacity | spacing | scale | color},
+    {"caption", LayerKind::caption, opacity | color},
+    {"time", LayerKind::time, opacity | color},
+    {"probes", LayerKind::probes, opacity | color},
+    {"bodies", {}, kAll},
+    {"collisions", {}, kAll},
+    {"springs", {}, kAll},
+    {"particles", {}, kAll},
+    {"cloth", {}, kAll},
+    {"joints", {}, kAll},
+    {"trails", {}, kAll},
+};
+
+const LayerEntry* layerNamed(Reader& reader, const YamlMark& mark, const std::string& key) {
+  std::vector<std::string> known;
+  for (const LayerEntry& entry : kLayers) {
+    if (key == entry.key) return &entry;
+    known.emplace_back(entry.key);
+  }
+  reader.error(mark, "unknown layer `" + key + "`", suggestion(key, known));
+  return nullptr;
+}
+
+void readOptions(Reader& reader, const YamlNode& node, const std::string& name, unsigned allowed,
+                 LayerSpec& layer) {
+  MapReader map(reader, node, name);
+  if (allowed & Option::opacity) map.number("opacity", layer.opacity, kShare);
+  if (allowed & Option::range) {
+    if (const YamlNode* found = map.find("range"); found && reader.isList(*found, inside(name, "range"), 2)) {
+      const auto low = reader.number(*found->items[0], inside(name, "range.0"));
+      const auto high = reader.number(*found->items[1], inside(name, "range.1"));
+      if (low && high && !(*low < *high))
+        reader.error(found->mark,
+                     "`" + inside(name, "range") + "` must be [low, high], the first below the second");
+      else if (low && high)
+        layer.range = {*low, *high};
+    }
+  }
+  if (allowed & Option::bar) map.boolean("bar", layer.bar);
+  if (allowed & Option::spacing) map.number("spacing", layer.spacing, kPositive);
+  if (allowed & Option::scale) map.number("scale", layer.scale, kPositive);
+  if (allowed & Option::color) map.color("color", layer.color);
+  map.finish();
+}
+
+void readLayer(Reader& reader, const YamlNode& node, const std::string& name, ViewSpec& view) {
+  const YamlNode* options = nullptr;
+  const LayerEntry* entry = nullptr;
+  if (node.kind == YamlNode::Kind::scalar) {
+    entry = layerNamed(reader, node.mark, node.text);
+  } else if (node.kind == YamlNode::Kind::map && node.entries.size() == 1) {
+    entry = layerNamed(reader, node.entries[0].mark, node.entries[0].key);
+    options = node.entries[0].value.get();
+  } else {
+    reader.error(
+        node.mark,
+        "`" + name + "` must be a layer's name, or a map of one name and its options, got " +
+            (node.kind == YamlNode::Kind::map ? "a map of " + std::to_string(node.entries.size()) + " keys"
+                                              : node.description()),
+        "{pressure: {opacity: 0.6}}");
+  }
+  if (!entry) return;
+  LayerSpec layer;
+  if (options) readOptions(reader, *options, inside(name, entry->key), entry->options, layer);
+  if (!entry->kind) return;
+  layer.kind = *entry->kind;
+  view.layers.push_back(layer);
+}
+
+void readCaptions(Reader& reader, const YamlNode& node, ViewSpec& view) {
+  if (!reader.isList(node, "view.captions")) return;
+  for (std::size_t k = 0; k < node.items.size(); ++k) {
+    const std::string name = "view.captions." + std::to_string(k);
+    MapReader map(reader, *node.items[k], name);
+    CaptionSpec caption;
+    if (map.required("text")) map.text("text", caption.text);
+    map.number("from", caption.from, kNotNegative);
+    if (map.number("until", caption.until, kNotNegative) && caption.until <= caption.from)
+      reader.error(map.find("until")->mark, "`" + name + "` ends before it starts");
+    map.finish();
+    view.captions.push_back(std::move(caption));
+  }
+}
+
+void readCamera(Reader& reader, const YamlNode& node, const SceneSpec& spec, CameraSpec& camera) {
+  MapReader map(reader, node, "view.camera");
+  Vec2 center;
+  double height = 0;
+  if (map.vector("center", center)) camera.center = center;
+  if (map.number("height", height, kPositive)) camera.height = height;
+  if (map.text("follow", camera.follow)) checkSolidName(reader, *map.find("follow"), spec, camera.follow);
+  map.finish();
+}
+
+}  // namespace
+
+void readView(MapReader& scene, SceneSpec& spec) {
+  Reader& reader = scene.reader();
+  ViewSpec& view = spec.view;
+  auto defaultLayers = [&] {
+    for (const LayerKind kind : {LayerKind::smoke, LayerKind::solids, LayerKind::caption}) {
+      LayerSpec layer;
+      layer.kind = kind;
+      view.layers.push_back(layer);
+    }
+  };
+  const YamlNode* node = scene.find("view");
+  if (!node) return defaultLayers();
+  MapReader map(reader, *node, "view");
+  if (const YamlNode* layers = map.find("layers")) {
+    if (reader.isList(*layers, "view.layers"))
+      for (std::size_t k = 0; k < layers->items.size(); ++k)
+        readLayer(reader, *layers->items[k], "view.layers." + std::to_string(k), view);
+  } else {
+    defaultLayers();
+  }
+  if (const YamlNode* captions = map.find("captions")) readCaptions(reader, *captions, view);
+  const YamlNode* background = map.find("background");
+  if (background && background->kind == YamlNode::Kind::scalar && background->text == "dark") {
+    view.background = ViewSpec().background;
+  } else if (background && background->kind == YamlNode::Kind::scalar && background->text == "light") {
+    view.background = {0.965f, 0.965f, 0.953f};
+  } else {
+    map.color("background", view.background);
+  }
+  if (const YamlNode* camera = map.find("camera")) readCamera(reader, *camera, spec, view.camera);
+  map.finish();
+}
+
+}  // namespace smokebox

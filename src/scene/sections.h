@@ -1,0 +1,38 @@
+// The sections of a scene file, each read into its part of the spec. Order matters where a section refers to
+// another: readScene() is the one place that knows it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/reader.h"
+#include "scene/spec.h"
+
+namespace smokebox {
+
+/// Reads and checks a whole tree; `events` tells whether the values that events set are tried out too.
+SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Problem>& problems,
+                    bool events = true);
+
+void readDomain(MapReader& scene, SceneSpec& spec);
+void readWalls(MapReader& scene, SceneSpec& spec);
+void readTimeAndOutput(MapReader& scene, SceneSpec& spec);
+void readFluid(MapReader& scene, SceneSpec& spec);
+void readSmoke(MapReader& scene, SceneSpec& spec);
+void readSolids(MapReader& scene, SceneSpec& spec);
+void readProbes(MapReader& scene, SceneSpec& spec);
+void readEvents(MapReader& scene, SceneSpec& spec);
+void readView(MapReader& scene, SceneSpec& spec);
+void readMethod(MapReader& scene, SceneSpec& spec);
+
+/// Tries the values that events set on copies of the tree, and reports what would be wrong with them.
+void checkSetActions(const YamlPtr& root, const std::string& name, SceneSpec& spec, Reader& reader);
+
+/// Reports a fluid that is let in without a way out.
+void checkInflow(MapReader& scene, const SceneSpec& spec);
+/// Warns of things that lie outside of the domain.
+void checkPlacement(MapReader& scene, const SceneSpec& spec);
+
+/// Reports a name that no solid has.
+bool checkSolidName(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name);
+
+}  // namespace smokebox

@@ -1,0 +1,21 @@
+// Paths into a scene's tree, such as `solids.fan.drag`: keys of maps, positions in lists, or names of what a
+// list holds.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/yaml_tree.h"
+
+namespace smokebox {
+
+std::vector<std::string> pathSteps(const std::string& path);
+
+/// A copy of the tree with `value` at the end of the path; maps that are missing on the way are made, and
+/// everything else is shared with `root`. Throws SceneError, at `place`, if a step leads nowhere.
+YamlPtr withValue(const YamlPtr& root, const std::string& path, const YamlPtr& value,
+                  const SourcePlace& place);
+
+/// Why an event must not set this, empty if it may: what belongs to the layout of the run stays as it is.
+std::string whyFixed(const std::string& path);
+
+}  // namespace smokebox
