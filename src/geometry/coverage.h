@@ -1,10 +1,20 @@
 // Exact coverage of a grid by polygons: which parts of the grid's lines lie inside solids, how much of each
 // cell is open, and which faces must be shut because a wall thinner than a cell parts the cells on its two
 // sides.
+//
+// The outlines are followed from cell to cell (grid_walk.h), as a scan converter does, so the work is
+// proportional to their length in cells. Solids whose boxes overlap are merged first. Every outline is grown
+// by 1e-6 h: what touches a grid line, the side of the domain or another solid then overlaps it, whatever the
+// rounding.
+//
+// A thin wall never leaks: where outlines part the fluid of a cell into several pieces, the cell keeps the
+// largest; the parts of its faces that lead to the others only are shut. So every pair of open faces of a
+// cell is joined by fluid inside it, and a chain of open faces is a way through the true geometry.
 #pragma once
 #include <vector>
 
 #include "base/field.h"
+#include "geometry/cover_work.h"
 #include "geometry/grid.h"
 #include "geometry/shape.h"
 
@@ -23,18 +33,38 @@ struct SolidOutline {
   std::vector<Outline> outlines;  // world coordinates
 };
 
+/// A part of a face that is shut though no solid lies there: it leads only to the lesser part of a cell.
+struct ShutPart {
+  bool xFace = true;
+  int i = 0, j = 0;
+  double lo = 0, hi = 0;  // metres along the face's line
+  int solid = -1;         // whose surface cuts the cell
+};
+
 struct GridCover {
   /// Lines y = k h/2, k = 0..2 ny (along x), and x = k h/2, k = 0..2 nx (along y).
   std::vector<LineCover> alongX, alongY;
-  /// Open share of faces (0..1) and of cells; shares under 1e-3 are 0, over 1 - 1e-3 of a face are 1.
+  /// Open share of faces (0..1) and of cells; shares of faces under 1e-3 are 0, over 1 - 1e-3 are 1. Margins:
+  /// 0.
   Field openX, openY, volume;
+  /// Sorted by kind (x first), j, i, lo; disjoint.
+  std::vector<ShutPart> shut;
+  CoverWork work;
+};
+
+/// Which opposite sides of the grid are joined: their faces are the same. Solids that cross such a side must
+/// be given once more on the other.
+struct JoinedSides {
+  bool x = false, y = false;
 };
 
 /// Reuses the memory of `cover`. Solids may overlap, touch, be thinner than a cell, and stick out of the
-/// grid.
-void coverGrid(const Grid& grid, const std::vector<SolidOutline>& solids, GridCover& cover);
+/// grid. Outer outlines are counterclockwise, holes clockwise.
+void coverGrid(const Grid& grid, const std::vector<SolidOutline>& solids, GridCover& cover,
+               JoinedSides joined = {});
 
 /// Share of each cell's area inside one placed shape (sources, bursts, probes), into `share` (0..1); exact.
+/// Outlines must not overlap.
 void coverShare(const Grid& grid, const std::vector<Outline>& outlines, Field& share);
 
 }  // namespace smokebox

@@ -1,0 +1,145 @@
+#include "coupling/wall_velocity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace smokebox {
+namespace {
+
+/// One kind of faces at a time; coordinates are swapped so that "along" is the direction of the face's line.
+class FaceVelocities {
+ public:
+  FaceVelocities(const CoveredBy& by, bool xFaces, const Grid& grid, Field& wall, Field& weight)
+      : by_(by),
+        xFaces_(xFaces),
+        h_(grid.h),
+        lines_(xFaces ? grid.nx + 1 : grid.ny + 1),
+        faces_(xFaces ? grid.ny : grid.nx),
+        wall_(wall),
+        weight_(weight) {}
+
+  void run(bool joined) {
+    const std::vector<LineCover>& covers = xFaces_ ? by_.geometry.alongY : by_.geometry.alongX;
+    for (int line = 0; line < lines_; ++line)
+      for (const CoveredInterval& interval : covers[2 * line]) addInterval(line, interval);
+    for (const ShutPart& part : by_.geometry.shut) {
+      if (part.xFace != xFaces_) continue;
+      const int line = xFaces_ ? part.i : part.j, face = xFaces_ ? part.j : part.i;
+      addPart(line, face, part.lo, part.hi, part.solid);
+      if (joined && line == 0) addPart(lines_ - 1, face, part.lo, part.hi, part.solid);
+    }
+  }
+
+ private:
+  float& at(Field& field, int line, int face) const {
+    return xFaces_ ? field(line, face) : field(face, line);
+  }
+
+  void addInterval(int line, const CoveredInterval& interval) {
+    const int first = std::max(0, static_cast<int>(std::floor(std::max(interval.lo, -h_) / h_)));
+    for (int face = first; face < faces_ && face * h_ < interval.hi; ++face) {
+      const double lo = std::max(interval.lo, face * h_), hi = std::min(interval.hi, (face + 1) * h_);
+      const double middle = 0.5 * (lo + hi);
+      const bool nearLo = middle - interval.lo <= interval.hi - middle;
+      if (hi > lo) addPart(line, face, lo, hi, nearLo ? interval.solidLo : interval.solidHi);
+    }
+  }
+
+  void addPart(int line, int face, double lo, double hi, int copy) {
+    const double middle = 0.5 * (lo + hi), across = line * h_;
+    const Vec2 velocity = by_.velocityAt(copy, xFaces_ ? Vec2{across, middle} : Vec2{middle, across});
+    const double normal = xFaces_ ? velocity.x : velocity.y;
+    float& wall = at(wall_, line, face);
+    float& weight = at(weight_, line, face);
+    const double share = (hi - lo) / h_, sum = weight + share;
+    // A running mean: one part alone leaves its velocity untouched by rounding.
+    wall = static_cast<float>(wall + (normal - wall) * (share / sum));
+    weight = static_cast<float>(sum);
+  }
+
+  const CoveredBy& by_;
+  bool xFaces_;
+  double h_;
+  int lines_, faces_;
+  Field &wall_, &weight_;
+};
+
+/// Adds the wall's or inflow's own velocity on the part of its faces that no solid covers.
+void addSide(const Boundary& boundary, Side side, Field& wall, const Field& weight) {
+  const SideFlow& flow = boundary.side(side);
+  if (flow.kind == WallKind::open || flow.kind == WallKind::periodic) return;
+  const bool vertical = side == Side::left || side == Side::right;
+  const std::vector<float>& normal = vertical ? flow.u : flow.v;
+  const Grid& grid = boundary.grid;
+  const int faces = vertical ? grid.ny : grid.nx;
+  for (int k = 0; k < faces; ++k) {
+    const int i = vertical ? (side == Side::left ? 0 : grid.nx) : k;
+    const int j = vertical ? k : (side == Side::bottom ? 0 : grid.ny);
+    const float own = flow.kind == WallKind::inflow && !normal.empty() ? normal[k] : 0.0f;
+    const float covered = std::min(weight(i, j), 1.0f);
+    wall(i, j) = covered * wall(i, j) + (1 - covered) * own;
+  }
+}
+
+/// No velocity where nothing closes the face; the weights go back to 0.
+void finish(const Field& open, int columns, int rows, Field& wall, Field& weight) {
+  for (int j = 0; j < rows; ++j) {
+    const float* openRow = open.row(j);
+    float* wallRow = wall.row(j);
+    for (int i = 0; i < columns; ++i) wallRow[i] = openRow[i] == 1 ? 0.0f : wallRow[i];
+    std::fill_n(weight.row(j), columns, 0.0f);
+  }
+}
+
+}  // namespace
+
+void setWallVelocities(const CoveredBy& by, Boundary& boundary, Field& weightU, Field& weightV) {
+  const Grid& grid = boundary.grid;
+  boundary.wallU.fill(0);
+  boundary.wallV.fill(0);
+  FaceVelocities(by, true, grid, boundary.wallU, weightU).run(boundary.periodicX());
+  FaceVelocities(by, false, grid, boundary.wallV, weightV).run(boundary.periodicY());
+  addSide(boundary, Side::left, boundary.wallU, weightU);
+  addSide(boundary, Side::right, boundary.wallU, weightU);
+  addSide(boundary, Side::bottom, boundary.wallV, weightV);
+  addSide(boundary, Side::top, boundary.wallV, weightV);
+  finish(boundary.openX, grid.nx + 1, grid.ny, boundary.wallU, weightU);
+  finish(boundary.openY, grid.nx, grid.ny + 1, boundary.wallV, weightV);
+  wrapFaces(boundary, true, boundary.wallU);
+  wrapFaces(boundary, false, boundary.wallV);
+}
+
+namespace {
+
+int wrapped(int k, int n) { return ((k % n) + n) % n; }
+
+/// `columns`, `rows`: how many the field has of its own, in [0, n] or [0, n).
+void wrap(const Boundary& boundary, int columns, int rows, Field& field) {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  if (boundary.periodicX())
+    for (int j = 0; j < rows; ++j) {
+      float* row = field.row(j);
+      for (int i = -Field::kMarginX; i < 0; ++i) row[i] = row[wrapped(i, nx)];
+      for (int i = nx; i < nx + Field::kMarginX; ++i) row[i] = row[wrapped(i, nx)];
+    }
+  if (!boundary.periodicY()) return;
+  const int first = boundary.periodicX() ? -Field::kMarginX : 0;
+  const int count = boundary.periodicX() ? nx + 2 * Field::kMarginX : columns;
+  for (int j = -Field::kMarginY; j < 0; ++j)
+    std::copy_n(field.row(wrapped(j, ny)) + first, count, field.row(j) + first);
+  for (int j = ny; j < ny + Field::kMarginY; ++j)
+    std::copy_n(field.row(wrapped(j, ny)) + first, count, field.row(j) + first);
+}
+
+}  // namespace
+
+void wrapFaces(const Boundary& boundary, bool xFaces, Field& field) {
+  const Grid& grid = boundary.grid;
+  wrap(boundary, xFaces ? grid.nx + 1 : grid.nx, xFaces ? grid.ny : grid.ny + 1, field);
+}
+
+void wrapCells(const Boundary& boundary, Field& field) {
+  wrap(boundary, boundary.grid.nx, boundary.grid.ny, field);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,27 @@
+// The velocity of what closes each face, along the face's normal.
+#pragma once
+#include "coupling/solids_on_grid.h"
+
+namespace smokebox {
+
+/// What coupling code asks of the solids and their images.
+struct CoveredBy {
+  const std::vector<MovingSolid>& solids;
+  const std::vector<SolidsOnGrid::Copy>& copies;
+  const GridCover& geometry;
+
+  Vec2 velocityAt(int copy, Vec2 p) const {
+    return solids[copies[copy].solid].velocityAt(p - copies[copy].shift);
+  }
+};
+
+/// Sets boundary.wallU, wallV from the solids and the sides. The weights are all 0, and are so again
+/// afterwards.
+void setWallVelocities(const CoveredBy& by, Boundary& boundary, Field& weightU, Field& weightV);
+
+/// Copies what lies beyond periodic sides from the other side, 0 beyond the others; repeats column nx, row
+/// ny.
+void wrapFaces(const Boundary& boundary, bool xFaces, Field& field);
+void wrapCells(const Boundary& boundary, Field& field);
+
+}  // namespace smokebox

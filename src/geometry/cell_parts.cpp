@@ -1,0 +1,222 @@
+#include "geometry/cell_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace smokebox {
+namespace {
+
+/// Parts of less than this share of a cell are rounding, not fluid (an outline along a grid line leaves such
+/// slivers).
+constexpr double kSliver = 4e-6;
+
+/// Area of a polygon given point by point, in units of the cell, relative to its corner.
+class Shoelace {
+ public:
+  Shoelace(const Grid& grid, int i, int j) : corner_{i * grid.h, j * grid.h}, scale_(1 / grid.h) {}
+  void add(Vec2 p) {
+    const Vec2 local = scale_ * (p - corner_);
+    if (empty_)
+      first_ = local;
+    else
+      twice_ += cross(last_ - first_, local - first_);
+    last_ = local;
+    empty_ = false;
+  }
+  double area() const { return twice_ / 2; }
+
+ private:
+  Vec2 corner_, first_, last_;
+  double scale_, twice_ = 0;
+  bool empty_ = true;
+};
+
+class CellCut {
+ public:
+  CellCut(const Grid& grid, int i, int j, GridCover& cover)
+      : grid_(grid), i_(i), j_(j), cover_(cover), work_(cover.work) {}
+
+  void run(bool perimeterOpen) {
+    collectEnds();
+    float& volume = cover_.volume(i_, j_);
+    if (work_.ends.empty()) {
+      volume = perimeterOpen ? static_cast<float>(std::clamp(1 - islandArea(-1), 0.0, 1.0)) : 0.0f;
+      return;
+    }
+    if (!endsTakeTurns()) {  // outlines that cross themselves by a rounding
+      volume = 0.25f * (cover_.openX(i_, j_) + cover_.openX(i_ + 1, j_) + cover_.openY(i_, j_) +
+                        cover_.openY(i_, j_ + 1));
+      return;
+    }
+    traceParts();
+    volume = kept_ < 0 ? 0.0f : static_cast<float>(std::clamp(keptArea_, 0.0, 1.0));
+    if (parts_ > 1 || kept_ < 0) shutTheOthers();
+  }
+
+ private:
+  using End = CoverWork::End;
+
+  End endOf(int crossing, int piece, bool entry) const {
+    const LineCrossing& c = work_.crossings[crossing];
+    const int horizontal = 2 * grid_.nx + 1;  // lines from here on run along x
+    End end{0, piece, 0, c.position, entry};
+    if (c.line >= horizontal)
+      end.side = c.line - horizontal == 2 * j_ ? 0 : 2;
+    else
+      end.side = c.line == 2 * i_ ? 3 : 1;
+    end.key = end.side < 2 ? c.rank : -c.rank;
+    return end;
+  }
+
+  void collectEnds() {
+    work_.ends.clear();
+    for (int p = work_.pieceOfCell[j_ * grid_.nx + i_]; p >= 0; p = work_.pieces[p].next) {
+      const CellPiece& piece = work_.pieces[p];
+      if (piece.entry < 0) continue;
+      work_.ends.push_back(endOf(piece.entry, p, true));
+      work_.ends.push_back(endOf(piece.exit, p, false));
+    }
+    std::sort(work_.ends.begin(), work_.ends.end(), [](const End& a, const End& b) {
+      return a.side != b.side ? a.side < b.side : a.key != b.key ? a.key < b.key : a.piece < b.piece;
+    });
+  }
+
+  bool endsTakeTurns() const {
+    const std::size_t n = work_.ends.size();
+    for (std::size_t k = 0; k < n; ++k)
+      if (work_.ends[k].entry == work_.ends[k + 1 < n ? k + 1 : 0].entry) return false;
+    return true;
+  }
+
+  Vec2 corner(int side) const {  // at the end of a side
+    const int right = side == 0 || side == 1, top = side == 1 || side == 2;
+    return {(i_ + right) * grid_.h, (j_ + top) * grid_.h};
+  }
+
+  Vec2 place(const End& end) const {
+    switch (end.side) {
+      case 0:
+        return {end.position, j_ * grid_.h};
+      case 1:
+        return {(i_ + 1) * grid_.h, end.position};
+      case 2:
+        return {end.position, (j_ + 1) * grid_.h};
+      default:
+        return {i_ * grid_.h, end.position};
+    }
+  }
+
+  int follower(int k) const { return k + 1 < static_cast<int>(work_.ends.size()) ? k + 1 : 0; }
+  int cornersTo(int from, int to) const {
+    const int turn = to <= from ? 4 : 0;  // past the first corner again
+    return work_.ends[to].side + turn - work_.ends[from].side;
+  }
+
+  void traceParts() {
+    const int n = static_cast<int>(work_.ends.size());
+    work_.part.assign(n, -1);
+    work_.nextEnd.assign(n, -1);  // of an exit: the entry of the same piece
+    for (int k = 0; k < n; ++k)
+      for (int m = 0; m < n; ++m)
+        if (!work_.ends[k].entry && work_.ends[m].entry && work_.ends[m].piece == work_.ends[k].piece)
+          work_.nextEnd[k] = m;
+    for (int start = 0; start < n; ++start) {
+      if (!work_.ends[start].entry || work_.part[start] >= 0) continue;
+      Shoelace boundary(grid_, i_, j_);
+      for (int k = start; work_.part[k] < 0;) {
+        work_.part[k] = parts_;
+        const int out = follower(k);
+        boundary.add(place(work_.ends[k]));
+        for (int c = 0, corners = cornersTo(k, out); c < corners; ++c)
+          boundary.add(corner((work_.ends[k].side + c) % 4));
+        const CellPiece& piece = work_.pieces[work_.ends[out].piece];
+        for (int p = piece.last; p > piece.first; --p) boundary.add(work_.points[p]);
+        k = work_.nextEnd[out];
+      }
+      const double area = boundary.area() - islandArea(start);
+      if (area > kSliver && area > keptArea_) {
+        kept_ = parts_;
+        keptArea_ = area;
+      }
+      ++parts_;
+    }
+  }
+
+  /// Area of the solids that lie wholly inside the part that starts at an end (-1: inside the cell), in
+  /// cells.
+  double islandArea(int start) const {
+    double sum = 0;
+    for (int p = work_.pieceOfCell[j_ * grid_.nx + i_]; p >= 0; p = work_.pieces[p].next) {
+      const CellPiece& piece = work_.pieces[p];
+      if (piece.entry >= 0) continue;
+      Shoelace loop(grid_, i_, j_);
+      for (int k = piece.first; k <= piece.last; ++k) loop.add(work_.points[k]);
+      const double area =
+          loop.area();  // a hole (negative) holds fluid that nothing reaches: it counts as solid
+      if (area > 0 && (start < 0 || insidePart(start, work_.points[piece.first]))) sum += area;
+    }
+    return sum;
+  }
+
+  bool insidePart(int start, Vec2 point) const {
+    bool inside = false;
+    Vec2 last = place(work_.ends[start]);
+    auto to = [&](Vec2 p) {
+      if ((last.y > point.y) != (p.y > point.y) &&
+          point.x < last.x + (point.y - last.y) / (p.y - last.y) * (p.x - last.x))
+        inside = !inside;
+      last = p;
+    };
+    int k = start;
+    do {
+      const int out = follower(k);
+      for (int c = 0, corners = cornersTo(k, out); c < corners; ++c) to(corner((work_.ends[k].side + c) % 4));
+      const CellPiece& piece = work_.pieces[work_.ends[out].piece];
+      for (int p = piece.last; p >= piece.first; --p) to(work_.points[p]);
+      k = work_.nextEnd[out];
+    } while (k != start);
+    return inside;
+  }
+
+  void shutTheOthers() {
+    for (int k = 0, n = static_cast<int>(work_.ends.size()); k < n; ++k) {
+      if (!work_.ends[k].entry || work_.part[k] == kept_) continue;
+      const int out = follower(k), corners = cornersTo(k, out);
+      const int solid = work_.crossings[work_.pieces[work_.ends[k].piece].entry].solid;
+      Vec2 from = place(work_.ends[k]);
+      for (int c = 0; c <= corners; ++c) {
+        const int side = (work_.ends[k].side + c) % 4;
+        const Vec2 to = c == corners ? place(work_.ends[out]) : corner(side);
+        shutFace(side, from, to, solid);
+        from = to;
+      }
+    }
+  }
+
+  void shutFace(int side, Vec2 from, Vec2 to, int solid) {
+    ShutPart part;
+    part.xFace = side == 1 || side == 3;
+    part.i = i_ + (side == 1);
+    part.j = j_ + (side == 2);
+    const double a = part.xFace ? from.y : from.x, b = part.xFace ? to.y : to.x;
+    part.lo = std::min(a, b);
+    part.hi = std::max(a, b);
+    part.solid = solid;
+    if (part.hi > part.lo) cover_.shut.push_back(part);
+  }
+
+  const Grid& grid_;
+  int i_, j_;
+  GridCover& cover_;
+  CoverWork& work_;
+  int parts_ = 0, kept_ = -1;
+  double keptArea_ = 0;
+};
+
+}  // namespace
+
+void keepLargestPart(const Grid& grid, int i, int j, bool perimeterOpen, GridCover& cover) {
+  CellCut(grid, i, j, cover).run(perimeterOpen);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,18 @@
+// The union of polygons, on a grid of integers fine enough not to matter (Vatti 1992, by the Clipper
+// library).
+#pragma once
+#include <vector>
+
+#include "geometry/shape.h"
+
+namespace smokebox {
+
+/// Every edge moved outwards (to the right of its direction) by `distance` metres, corners mitred. For
+/// distances far smaller than the edges: nothing is done about edges that vanish.
+void growOutline(const Outline& outline, double distance, Outline& grown);
+
+/// Outlines of the union; coordinates are rounded to about `quantum` metres (never finer than 2^-40 of the
+/// extent). Outer outlines come out counterclockwise, holes clockwise.
+std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, double quantum);
+
+}  // namespace smokebox
