@@ -1,0 +1,170 @@
+#include "fluid/multigrid.h"
+
+#include <algorithm>
+
+#include "fluid/multigrid_kernels.h"
+
+namespace smokebox {
+
+using multigrid::Level;
+
+namespace {
+
+constexpr int kFullSweeps = 2;  // one red, one black
+constexpr int kBandPairs = 2;   // red-black pairs along solids, beyond those
+constexpr int kSweeps = kFullSweeps + 2 * kBandPairs;
+
+/// Sweep s of row j on the way down.
+void sweepDown(Level& level, int s, int j) {
+  if (s == 0)
+    startRow(level, j);
+  else if (s < kFullSweeps)
+    multigrid::sweepRow<false>(level, j, s & 1);
+  else
+    multigrid::sweepRow<true>(level, j, s & 1);
+}
+
+/// The same sweeps backwards, on the way up.
+void sweepUp(Level& level, int s, int j) {
+  const int mirrored = kSweeps - 1 - s;
+  if (mirrored < kFullSweeps)
+    multigrid::sweepRow<false>(level, j, mirrored & 1);
+  else
+    multigrid::sweepRow<true>(level, j, mirrored & 1);
+}
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+double dotOfRow(const Level& level, int j) {
+  const float* x = level.row(level.x, j);
+  const float* b = level.row(level.b, j);
+  multigrid::Lanes sum = {};
+  for (int i = 0; i < level.chunks * multigrid::kLanes; i += multigrid::kLanes)
+    sum += multigrid::load(x + i) * multigrid::load(b + i);
+  return multigrid::sumOfLanes(sum);
+}
+#pragma GCC diagnostic pop
+
+}  // namespace
+
+Multigrid::Multigrid(const Boundary& boundary, ThreadPool& pool) : pool_(pool) { rebuild(boundary); }
+
+void Multigrid::shape(const Boundary& boundary) {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const bool px = boundary.periodicX(), py = boundary.periodicY();
+  if (!levels_.empty()) {
+    const Level& top = levels_.front();
+    if (top.nx == nx && top.ny == ny && top.periodicX == px && top.periodicY == py) return;
+  }
+  levels_.clear();
+  int m = nx, n = ny, unit = 1;
+  while (true) {
+    levels_.emplace_back();
+    Level& level = levels_.back();
+    level.shape(m, n, px, py, pool_.threads() > 1 || py);
+    level.unit = unit;
+    // Widths are exact: the last block may be smaller. The value beyond an open side sits half a fine cell
+    // outside.
+    const auto measure = [&](int count, int cells, bool periodic, std::vector<double>& width,
+                             std::vector<double>& distance) {
+      width.resize(count);
+      distance.resize(count + 1);
+      for (int k = 0; k < count; ++k) width[k] = std::min((k + 1) * unit, cells) - k * unit;
+      for (int k = 1; k < count; ++k) distance[k] = 0.5 * (width[k - 1] + width[k]);
+      distance[0] = 0.5 * (width[0] + (periodic ? width[count - 1] : 1));
+      distance[count] = periodic ? distance[0] : 0.5 * (width[count - 1] + 1);
+    };
+    measure(m, nx, px, level.widthX, level.distanceX);
+    measure(n, ny, py, level.widthY, level.distanceY);
+    if (m == 1 && n == 1) break;
+    m = (m + 1) / 2;
+    n = (n + 1) / 2;
+    unit *= 2;
+  }
+  zeroRow_.assign(levels_.front().residualStride, 0);
+  rowSums_.assign(ny, 0);
+}
+
+void Multigrid::rebuild(const Boundary& boundary) {
+  shape(boundary);
+  builder_.finest(boundary, levels_.front());
+  for (std::size_t l = 1; l < levels_.size(); ++l) builder_.coarsen(levels_[l - 1], levels_[l]);
+}
+
+bool Multigrid::fused(const Level& level) const {
+  const bool small = static_cast<long>(level.nx) * level.ny < (1 << 15);
+  return (pool_.threads() == 1 || small) && !level.periodicY;
+}
+
+template <class Body>
+void Multigrid::rows(const Level& level, int first, int last, Body&& body) {
+  // Across the seam of an odd number of periodic rows, blocks of one colour are linked: one after the other
+  // there.
+  const bool serial = level.periodicY && level.ny % 2 == 1 && level.extras > 0;
+  forRows(pool_, serial ? 0 : static_cast<long>(level.nx) * level.ny, first, last, body);
+}
+
+void Multigrid::descend(std::size_t l) {
+  Level& level = levels_[l];
+  Level* coarse = l + 1 < levels_.size() ? &levels_[l + 1] : nullptr;
+  const int ny = level.ny;
+  if (!fused(level)) {
+    for (int s = 0; s < kSweeps; ++s) {
+      rows(level, 0, ny, [&](int j) { sweepDown(level, s, j); });
+      level.wrapRows(level.x);
+    }
+    if (!coarse) return;
+    rows(level, 0, ny, [&](int j) { residualOfRow(level, j); });
+    rows(level, 0, coarse->ny, [&](int J) { restrictRow(level, *coarse, J, zeroRow_.data()); });
+    return;
+  }
+  for (int t = 0; t < ny + kSweeps; ++t) {
+    for (int s = 0; s < kSweeps; ++s)
+      if (t - s >= 0 && t - s < ny) sweepDown(level, s, t - s);
+    const int j = t - kSweeps;
+    if (j < 0 || !coarse) continue;
+    residualOfRow(level, j);
+    if (j % 2 == 1 || j == ny - 1) restrictRow(level, *coarse, j / 2, zeroRow_.data());
+  }
+}
+
+void Multigrid::ascend(std::size_t l) {
+  Level& level = levels_[l];
+  const Level& coarse = levels_[l + 1];
+  const int ny = level.ny;
+  const bool finest = l == 0;
+  if (!fused(level)) {
+    rows(level, 0, ny, [&](int j) { prolongRow(level, coarse, j); });
+    level.wrapRows(level.x);
+    for (int s = 0; s < kSweeps; ++s) {
+      rows(level, 0, ny, [&](int j) { sweepUp(level, s, j); });
+      level.wrapRows(level.x);
+    }
+    if (finest) rows(level, 0, ny, [&](int j) { rowSums_[j] = dotOfRow(level, j); });
+    return;
+  }
+  for (int t = 0; t < ny + kSweeps; ++t) {
+    if (t < ny) prolongRow(level, coarse, t);
+    for (int s = 0; s < kSweeps; ++s) {
+      const int j = t - 1 - s;
+      if (j >= 0 && j < ny) sweepUp(level, s, j);
+    }
+    if (finest && t >= kSweeps) rowSums_[t - kSweeps] = dotOfRow(level, t - kSweeps);
+  }
+}
+
+double Multigrid::cycle() {
+  for (std::size_t l = 0; l < levels_.size(); ++l) descend(l);
+  for (std::size_t l = levels_.size() - 1; l-- > 0;) ascend(l);
+  double sum = 0;
+  for (double s : rowSums_) sum += s;
+  return sum;
+}
+
+std::size_t Multigrid::bytes() const {
+  std::size_t sum = builder_.bytes() + (zeroRow_.size() + 2 * rowSums_.size()) * sizeof(float);
+  for (const Level& level : levels_) sum += level.bytes();
+  return sum;
+}
+
+}  // namespace smokebox

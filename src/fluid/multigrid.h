@@ -1,0 +1,68 @@
+// A symmetric multigrid cycle for the pressure equation, to precondition conjugate gradients with.
+//
+//   sum over the faces of a cell of  open (x(cell) - x(neighbour)) = b(cell),   x = 0 beyond an open side
+//
+// Red-black Gauss-Seidel (mirrored after the coarse correction), more sweeps in a band along solids (McAdams
+// 2010), piecewise constant transfer, coarse cells split along solids (Dick, Rogowsky and Westermann 2016),
+// coarsened down to one block. Cells without an open face, and regions without an open side at the coarsest
+// level, get 0 from there: b must add up to 0 over each sealed region.
+//
+// On one thread all sweeps of a level run in one pass over its rows, each row as soon as its neighbours are
+// ready; on several threads one pass for each sweep. The results are the same to the bit.
+#pragma once
+#include <vector>
+
+#include "base/threads.h"
+#include "fluid/boundary.h"
+#include "fluid/multigrid_build.h"
+#include "fluid/multigrid_level.h"
+
+namespace smokebox {
+
+class Multigrid {
+ public:
+  Multigrid(const Boundary& boundary, ThreadPool& pool);
+
+  /// Rebuilds the levels from the open shares.
+  void rebuild(const Boundary& boundary);
+
+  /// The finest level: fill its b (0 where there is no unknown), read its x.
+  multigrid::Level& finest() { return levels_.front(); }
+  const multigrid::Level& finest() const { return levels_.front(); }
+
+  /// x = M b by one cycle; returns the sum of x b.
+  double cycle();
+
+  std::size_t bytes() const;
+
+ private:
+  void shape(const Boundary& boundary);
+  void descend(std::size_t l);
+  void ascend(std::size_t l);
+  bool fused(const multigrid::Level& level) const;
+  template <class Body>
+  void rows(const multigrid::Level& level, int first, int last, Body&& body);
+
+  ThreadPool& pool_;
+  multigrid::Builder builder_;
+  std::vector<multigrid::Level> levels_;
+  std::vector<float> zeroRow_;
+  std::vector<double> rowSums_;
+};
+
+/// Calls body(j) for the rows [first, last) of a grid with `cells` cells: spread over the threads if that is
+/// worth it.
+template <class Body>
+void forRows(ThreadPool& pool, long cells, int first, int last, Body&& body) {
+  constexpr int kGrain = 8;
+  constexpr long kWorthIt = 1 << 15;
+  if (pool.threads() == 1 || cells < kWorthIt) {
+    for (int j = first; j < last; ++j) body(j);
+    return;
+  }
+  pool.blocks(first, last, kGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) body(j);
+  });
+}
+
+}  // namespace smokebox

@@ -1,0 +1,512 @@
+#include "fluid/multigrid_build.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "fluid/multigrid_kernels.h"
+
+namespace smokebox::multigrid {
+
+namespace {
+
+Towards opposite(Towards t) { return static_cast<Towards>(static_cast<int>(t) ^ 1); }
+
+struct Cell {
+  int i, j;
+};
+
+/// The block of an unknown, or of a ghost beyond a side.
+Cell cellOf(const Level& level, int at) {
+  if (at >= level.extrasBegin) {
+    const int cell = level.extraCell[at - level.extrasBegin];
+    return {cell % level.nx, cell / level.nx};
+  }
+  const int shifted = static_cast<int>(at - level.origin + level.stride + 1);  // ghosts at -1 become 0
+  const int j = shifted / static_cast<int>(level.stride);
+  return {shifted - j * static_cast<int>(level.stride) - 1, j - 1};
+}
+
+int firstExtra(const Level& level, int i, int j) {
+  return level.extras ? level.extraBase[j * level.nx + i] : -1;
+}
+
+/// Offset into the coarse x of the unknown that block (i, j)'s unknown number `unknown` belongs to.
+int parentOf(const Level& fine, const Level& coarse, int i, int j, int unknown) {
+  const int base = coarse.extraBase[(j / 2) * coarse.nx + i / 2];
+  const int part = base < 0 ? 0 : fine.part[unknown];
+  return static_cast<int>(part == 0 ? coarse.at(i / 2, j / 2) : coarse.extrasBegin + base + part - 1);
+}
+
+int parentOf(const Level& fine, const Level& coarse, int i, int j) {
+  return parentOf(fine, coarse, i, j, j * fine.nx + i);
+}
+
+int parentOf(const Level& fine, const Level& coarse, int at) {
+  const Cell c = cellOf(fine, at);
+  const int unknown = at >= fine.extrasBegin ? static_cast<int>(fine.nx * fine.ny + (at - fine.extrasBegin))
+                                             : c.j * fine.nx + c.i;
+  return parentOf(fine, coarse, c.i, c.j, unknown);
+}
+
+void clear(Level& level) {
+  std::fill(level.x.begin(), level.x.end(), 0.0f);
+  std::fill(level.b.begin(), level.b.end(), 0.0f);
+}
+
+}  // namespace
+
+void Builder::finest(const Boundary& boundary, Level& level) {
+  clear(level);
+  const int nx = level.nx, ny = level.ny;
+  for (int j = 0; j <= ny; ++j) {
+    float* ay = level.row(level.ay, j);
+    std::copy_n(boundary.openY.row(level.periodicY && j == ny ? 0 : j), nx, ay);
+    if (j == ny) break;
+    float* ax = level.row(level.ax, j);
+    std::copy_n(boundary.openX.row(j), nx + 1, ax);
+    if (level.periodicX) ax[nx] = ax[0];
+  }
+  raw_.clear();
+  listSpecials(level);
+  classify(level);
+}
+
+void Builder::coarsen(Level& fine, Level& coarse) {
+  clear(coarse);
+  findParts(fine, coarse);
+  linkGrid(fine, coarse);
+  linkLists(fine, coarse);
+  listSpecials(coarse);
+  classify(coarse);
+}
+
+void Builder::findParts(Level& fine, Level& coarse) {
+  coarse.extraCell.clear();
+  coarse.extras = 0;
+  coarse.extraBase.assign(static_cast<std::size_t>(coarse.nx) * coarse.ny, -1);
+  fine.part.resize(static_cast<std::size_t>(fine.nx) * fine.ny + fine.extras);
+  fine.prolong.clear();
+  fine.split.clear();
+  fine.child.clear();
+  fine.splitBegin.assign(coarse.ny + 1, 0);
+  splitChunk_.assign(coarse.chunk.size(), 0);
+  regularChunk_.assign(coarse.chunk.size(), 0);
+  if (slot_.size() < fine.x.size()) slot_.resize(fine.x.size(), -1);
+
+  for (int J = 0; J < coarse.ny; ++J) {
+    fine.splitBegin[J] = static_cast<int>(fine.split.size());
+    for (auto& list : prolong_) list.clear();
+    for (int C = 0; C < coarse.chunks; ++C) {
+      std::uint8_t all = kRegular | kEmpty;
+      for (int q = 0; q < 2 && 2 * J + q < fine.ny; ++q)
+        for (int c = 2 * C; c < 2 * C + 2 && c < fine.chunks; ++c) all &= fine.chunkRow(2 * J + q)[c];
+      if (all & kEmpty) continue;
+      if ((all & kRegular) && 2 * J + 1 < fine.ny && 2 * C + 1 < fine.chunks) {
+        regularChunk_[J * coarse.chunks + C] = 1;
+        continue;
+      }
+      const int before = coarse.extras;
+      for (int I = C * kLanes; I < std::min((C + 1) * kLanes, coarse.nx); ++I) splitBlock(fine, coarse, I, J);
+      splitChunk_[J * coarse.chunks + C] = coarse.extras > before;
+    }
+    for (int q = 0; q < 2 && 2 * J + q < fine.ny; ++q) {
+      fine.prolongBegin[2 * J + q] = static_cast<int>(fine.prolong.size());
+      fine.prolong.insert(fine.prolong.end(), prolong_[q].begin(), prolong_[q].end());
+    }
+  }
+  fine.splitBegin[coarse.ny] = static_cast<int>(fine.split.size());
+  fine.prolongBegin[fine.ny] = static_cast<int>(fine.prolong.size());
+  coarse.x.resize(coarse.extrasBegin + coarse.extras, 0);
+  coarse.b.resize(coarse.extrasBegin + coarse.extras, 0);
+  coarse.residualExtra.assign(coarse.extras, 0);
+}
+
+int Builder::findRoot(int member) {
+  while (members_[member].root != member)
+    member = members_[member].root = members_[members_[member].root].root;
+  return member;
+}
+
+// The parts of the block (I, J): members are joined along every link between two of them.
+void Builder::splitBlock(Level& fine, Level& coarse, int I, int J) {
+  const int i0 = 2 * I, j0 = 2 * J;
+  const bool right = i0 + 1 < fine.nx, upper = j0 + 1 < fine.ny;
+  const std::ptrdiff_t o = fine.at(i0, j0), above = o + fine.stride;
+  const int active = (fine.id[o] != 0 ? 1 : 0) | (right && fine.id[o + 1] != 0 ? 2 : 0) |
+                     (upper && fine.id[above] != 0 ? 4 : 0) |
+                     (right && upper && fine.id[above + 1] != 0 ? 8 : 0);
+  const int links = (right && fine.ax[o + 1] > 0 ? 1 : 0) | (upper && fine.ay[above] > 0 ? 2 : 0) |
+                    (right && upper && fine.ax[above + 1] > 0 ? 4 : 0) |
+                    (right && upper && fine.ay[above + 1] > 0 ? 8 : 0);
+  bool hasExtras = false;
+  if (fine.extras)
+    for (int q = 0; q < (upper ? 2 : 1); ++q)
+      for (int p = 0; p < (right ? 2 : 1); ++p) hasExtras |= firstExtra(fine, i0 + p, j0 + q) >= 0;
+  const int trees =
+      std::popcount(static_cast<unsigned>(active)) - std::popcount(static_cast<unsigned>(links));
+  if (!hasExtras && (links == 15 || trees <= 1)) return;
+
+  members_.clear();
+  const auto add = [&](int unknown, int at, int child, int up) {
+    slot_[at] = static_cast<int>(members_.size());
+    members_.push_back({unknown, at, child, up, static_cast<int>(members_.size())});
+  };
+  const auto join = [&](int a, int b) {
+    const int ra = findRoot(a), rb = findRoot(b);
+    members_[std::max(ra, rb)].root = std::min(ra, rb);
+  };
+  for (int q = 0; q < 2; ++q)
+    for (int p = 0; p < 2; ++p)
+      if (active & (1 << (2 * q + p)))
+        add((j0 + q) * fine.nx + i0 + p, static_cast<int>(fine.at(i0 + p, j0 + q)), 2 * (i0 + p) + q, q);
+  const int primaries = static_cast<int>(members_.size());
+  if (hasExtras) {
+    for (int q = 0; q < (upper ? 2 : 1); ++q)
+      for (int p = 0; p < (right ? 2 : 1); ++p) {
+        const int cell = (j0 + q) * fine.nx + i0 + p;
+        const int base = fine.extraBase[cell];
+        for (int k = base; k >= 0 && k < fine.extras && fine.extraCell[k] == cell; ++k)
+          if (fine.specialInverse[labels_[k]] > 0)
+            add(fine.nx * fine.ny + k, static_cast<int>(fine.extrasBegin) + k, ~k, q);
+      }
+  }
+  const auto joinAt = [&](std::ptrdiff_t a, std::ptrdiff_t b) {
+    if (slot_[a] >= 0 && slot_[b] >= 0) join(slot_[a], slot_[b]);
+  };
+  if (links & 1) joinAt(o, o + 1);
+  if (links & 2) joinAt(o, above);
+  if (links & 4) joinAt(above, above + 1);
+  if (links & 8) joinAt(o + 1, above + 1);
+  // Where the block covers a whole period, what meets across the seam is one part too.
+  if (fine.periodicX && fine.nx == 2)
+    for (int q = 0; q < (upper ? 2 : 1); ++q)
+      if (fine.ax[o + q * fine.stride] > 0) joinAt(o + q * fine.stride, o + q * fine.stride + 1);
+  if (fine.periodicY && fine.ny == 2)
+    for (int p = 0; p < (right ? 2 : 1); ++p)
+      if (fine.ay[o + p] > 0) joinAt(o + p, above + p);
+  for (int m = primaries; m < static_cast<int>(members_.size()); ++m) {
+    const int s = labels_[members_[m].at - fine.extrasBegin];
+    for (int e = fine.entryBegin[s]; e < fine.entryBegin[s + 1]; ++e)
+      if (slot_[fine.entries[e].to] >= 0) join(m, slot_[fine.entries[e].to]);
+  }
+  for (const Member& m : members_) slot_[m.at] = -1;
+
+  // The part with the most members becomes the primary one.
+  const int count = static_cast<int>(members_.size());
+  sizes_.assign(count, 0);
+  for (int m = 0; m < count; ++m) ++sizes_[members_[m].root = findRoot(m)];
+  order_.clear();
+  for (int m = 0; m < count; ++m)
+    if (members_[m].root == m) order_.push_back(m);
+  if (order_.empty()) return;
+  const auto largest =
+      std::max_element(order_.begin(), order_.end(), [&](int a, int b) { return sizes_[a] < sizes_[b]; });
+  std::rotate(order_.begin(), largest, largest + 1);
+
+  const int cell = J * coarse.nx + I;
+  if (order_.size() > 1) coarse.extraBase[cell] = coarse.extras;
+  for (int p = 0; p < static_cast<int>(order_.size()); ++p) {
+    int parent = static_cast<int>(coarse.at(I, J));
+    if (p > 0) {
+      parent = static_cast<int>(coarse.extrasBegin) + coarse.extras++;
+      coarse.extraCell.push_back(cell);
+    }
+    const int begin = static_cast<int>(fine.child.size());
+    for (const Member& m : members_) {
+      if (m.root != order_[p]) continue;
+      fine.part[m.unknown] = static_cast<std::uint16_t>(p);
+      fine.child.push_back(m.child);
+      if (p > 0 || m.child < 0) prolong_[m.upper].push_back({m.at, parent, 0});
+    }
+    fine.split.push_back({parent, begin, static_cast<int>(fine.child.size())});
+  }
+}
+
+void Builder::linkLeft(const Level& fine, Level& coarse, int I, int J) {
+  const bool atLeft = I == 0, atRight = I == coarse.nx;
+  float* target = coarse.row(coarse.ax, J) + I;
+  *target = 0;
+  if (coarse.periodicX && (atRight || coarse.nx == 1)) return;  // copied from the left side; a link to itself
+  const int i = atRight ? fine.nx : 2 * I;
+  const float factor = static_cast<float>(fine.distanceX[i] / coarse.distanceX[I]);
+  const int leftColumn = atLeft ? (coarse.periodicX ? fine.nx - 1 : -1) : i - 1;
+  float sum = 0;
+  for (int j = 2 * J; j < std::min(2 * J + 2, fine.ny); ++j) {
+    const float w = fine.row(fine.ax, j)[i];
+    if (!(w > 0)) continue;
+    const int a = atRight ? static_cast<int>(coarse.at(I, J)) : parentOf(fine, coarse, i, j);
+    const int b = leftColumn < 0 ? static_cast<int>(coarse.at(-1, J)) : parentOf(fine, coarse, leftColumn, j);
+    if (a < coarse.extrasBegin && b < coarse.extrasBegin)
+      sum += w;
+    else if (atRight)
+      raw_.push_back({b, a, w * factor, Towards::right, true});
+    else
+      raw_.push_back({a, b, w * factor, Towards::left, leftColumn < 0});
+  }
+  *target = sum * factor;
+}
+
+void Builder::linkBelow(const Level& fine, Level& coarse, int I, int J) {
+  const bool atBottom = J == 0, atTop = J == coarse.ny;
+  float* target = coarse.row(coarse.ay, J) + I;
+  *target = 0;
+  if (coarse.periodicY && (atTop || coarse.ny == 1)) return;
+  const int j = atTop ? fine.ny : 2 * J;
+  const float factor = static_cast<float>(fine.distanceY[j] / coarse.distanceY[J]);
+  const int rowBelow = atBottom ? (coarse.periodicY ? fine.ny - 1 : -1) : j - 1;
+  float sum = 0;
+  for (int i = 2 * I; i < std::min(2 * I + 2, fine.nx); ++i) {
+    const float w = fine.row(fine.ay, j)[i];
+    if (!(w > 0)) continue;
+    const int a = atTop ? static_cast<int>(coarse.at(I, J)) : parentOf(fine, coarse, i, j);
+    const int b = rowBelow < 0 ? static_cast<int>(coarse.at(I, -1)) : parentOf(fine, coarse, i, rowBelow);
+    if (a < coarse.extrasBegin && b < coarse.extrasBegin)
+      sum += w;
+    else if (atTop)
+      raw_.push_back({b, a, w * factor, Towards::up, true});
+    else
+      raw_.push_back({a, b, w * factor, Towards::down, rowBelow < 0});
+  }
+  *target = sum * factor;
+}
+
+// Links that cross a face of the coarse grid and are kept in the fine grid.
+void Builder::linkGrid(const Level& fine, Level& coarse) {
+  raw_.clear();
+  for (int J = 0; J <= coarse.ny; ++J)
+    for (int C = 0; C < coarse.chunks; ++C) {
+      const int first = C * kLanes, last = std::min(first + kLanes, coarse.nx);
+      if (J < coarse.ny && J > 0 && C > 0) {
+        const int k = J * coarse.chunks + C;
+        if (regularChunk_[k] && !splitChunk_[k - 1] && !splitChunk_[k - coarse.chunks]) {
+          std::fill(coarse.row(coarse.ax, J) + first, coarse.row(coarse.ax, J) + last, 1.0f);
+          std::fill(coarse.row(coarse.ay, J) + first, coarse.row(coarse.ay, J) + last, 1.0f);
+          if (last == coarse.nx) linkLeft(fine, coarse, last, J);
+          continue;
+        }
+      }
+      for (int I = first; I < last; ++I) {
+        if (J < coarse.ny) linkLeft(fine, coarse, I, J);
+        linkBelow(fine, coarse, I, J);
+      }
+      if (J < coarse.ny && last == coarse.nx) linkLeft(fine, coarse, last, J);
+    }
+}
+
+// Links that cross a face of the coarse grid and are kept in the fine level's lists.
+void Builder::linkLists(const Level& fine, Level& coarse) {
+  for (int s = 0; s < static_cast<int>(fine.specialAt.size()); ++s) {
+    const int i = fine.specialCell[s] % fine.nx, j = fine.specialCell[s] / fine.nx;
+    for (int e = fine.entryBegin[s]; e < fine.entryBegin[s + 1]; ++e) {
+      const Level::Entry& entry = fine.entries[e];
+      if (!entry.listed) continue;
+      // Each link once: from its right or upper end; those to a ghost have no other end.
+      const Towards t = entry.towards;
+      bool ghost = false, crosses = false;
+      int face = 0, ghostAt = 0;
+      double factor = 0;
+      if (t == Towards::left) {
+        ghost = i == 0 && !fine.periodicX;
+        crosses = i % 2 == 0 && !(coarse.periodicX && coarse.nx == 1);
+        face = i / 2;
+        factor = fine.distanceX[i] / coarse.distanceX[face];
+        ghostAt = static_cast<int>(coarse.at(-1, j / 2));
+      } else if (t == Towards::down) {
+        ghost = j == 0 && !fine.periodicY;
+        crosses = j % 2 == 0 && !(coarse.periodicY && coarse.ny == 1);
+        face = j / 2;
+        factor = fine.distanceY[j] / coarse.distanceY[face];
+        ghostAt = static_cast<int>(coarse.at(i / 2, -1));
+      } else if (t == Towards::right) {
+        ghost = crosses = i == fine.nx - 1 && !fine.periodicX;
+        face = coarse.nx;
+        factor = fine.distanceX[fine.nx] / coarse.distanceX[face];
+        ghostAt = static_cast<int>(coarse.at(coarse.nx, j / 2));
+      } else {
+        ghost = crosses = j == fine.ny - 1 && !fine.periodicY;
+        face = coarse.ny;
+        factor = fine.distanceY[fine.ny] / coarse.distanceY[face];
+        ghostAt = static_cast<int>(coarse.at(i / 2, coarse.ny));
+      }
+      if (!crosses) continue;
+      const int a = parentOf(fine, coarse, fine.specialAt[s]);
+      const int b = ghost ? ghostAt : parentOf(fine, coarse, entry.to);
+      const float weight = entry.weight * static_cast<float>(factor);
+      if (a >= coarse.extrasBegin || b >= coarse.extrasBegin)
+        raw_.push_back({a, b, weight, t, ghost});
+      else if (t == Towards::left || t == Towards::right)
+        coarse.row(coarse.ax, j / 2)[face] += weight;
+      else
+        coarse.row(coarse.ay, face)[i / 2] += weight;
+    }
+  }
+  if (coarse.periodicX)
+    for (int J = 0; J < coarse.ny; ++J) coarse.row(coarse.ax, J)[coarse.nx] = coarse.row(coarse.ax, J)[0];
+  if (coarse.periodicY) std::copy_n(coarse.row(coarse.ay, 0), coarse.nx, coarse.row(coarse.ay, coarse.ny));
+}
+
+// Sorts the special unknowns by row and colour, and gathers their links; parallel links become one.
+void Builder::listSpecials(Level& level) {
+  if (slot_.size() < level.x.size()) slot_.resize(level.x.size(), -1);
+  specials_.clear();
+  const auto mark = [&](int at) {
+    if (slot_[at] >= 0) return;
+    slot_[at] = 0;
+    specials_.push_back(at);
+  };
+  for (int k = 0; k < level.extras; ++k) mark(static_cast<int>(level.extrasBegin) + k);
+  for (const Raw& link : raw_) {
+    mark(link.a);
+    if (!link.ghost) mark(link.b);
+  }
+  const int count = static_cast<int>(specials_.size());
+  level.specialAt.resize(count);
+  level.specialCell.resize(count);
+  level.specialInverse.assign(count, 0);
+  level.specialValue.assign(count, 0);
+  level.specialBegin.assign(2 * level.ny + 1, 0);
+  const auto key = [&](int at) {
+    const Cell c = cellOf(level, at);
+    return 2 * c.j + ((c.i + c.j) & 1);
+  };
+  for (int at : specials_) ++level.specialBegin[key(at) + 1];
+  for (int k = 0; k < 2 * level.ny; ++k) level.specialBegin[k + 1] += level.specialBegin[k];
+  counts_.assign(level.specialBegin.begin(), level.specialBegin.end());
+  for (int at : specials_) {
+    const int s = counts_[key(at)]++;
+    const Cell c = cellOf(level, at);
+    slot_[at] = s;
+    level.specialAt[s] = at;
+    level.specialCell[s] = c.j * level.nx + c.i;
+  }
+
+  // Room for every link, then without the gaps.
+  counts_.assign(count + 1, 0);
+  for (const Raw& link : raw_) {
+    ++counts_[slot_[link.a] + 1];
+    if (!link.ghost) ++counts_[slot_[link.b] + 1];
+  }
+  for (int s = 0; s < count; ++s) counts_[s + 1] += counts_[s];
+  entries_.resize(counts_[count]);
+  used_.assign(count, 0);
+  const auto insert = [&](int s, int to, float weight, Towards towards) {
+    Level::Entry* begin = entries_.data() + counts_[s];
+    for (int k = 0; k < used_[s]; ++k)
+      if (begin[k].to == to && begin[k].towards == towards) {
+        begin[k].weight += weight;
+        return;
+      }
+    begin[used_[s]++] = {to, weight, towards, true};
+  };
+  for (const Raw& link : raw_) {
+    insert(slot_[link.a], link.b, link.weight, link.towards);
+    if (!link.ghost) insert(slot_[link.b], link.a, link.weight, opposite(link.towards));
+  }
+  level.entryBegin.resize(count + 1);
+  level.entries.clear();
+  for (int s = 0; s < count; ++s) {
+    level.entryBegin[s] = static_cast<int>(level.entries.size());
+    level.entries.insert(level.entries.end(), entries_.begin() + counts_[s],
+                         entries_.begin() + counts_[s] + used_[s]);
+    const int at = level.specialAt[s];
+    if (at < level.extrasBegin) {
+      const auto fromGrid = [&](std::ptrdiff_t to, float weight, Towards towards) {
+        if (weight > 0) level.entries.push_back({static_cast<int>(to), weight, towards, false});
+      };
+      fromGrid(at - 1, level.ax[at], Towards::left);
+      fromGrid(at + 1, level.ax[at + 1], Towards::right);
+      fromGrid(at - level.stride, level.ay[at], Towards::down);
+      fromGrid(at + level.stride, level.ay[at + level.stride], Towards::up);
+    }
+    float diagonal = 0;
+    for (std::size_t e = level.entryBegin[s]; e < level.entries.size(); ++e)
+      diagonal += level.entries[e].weight;
+    level.specialInverse[s] = diagonal > 0 ? 1 / diagonal : 0;
+  }
+  level.entryBegin[count] = static_cast<int>(level.entries.size());
+
+  labels_.resize(level.extras);
+  for (int at : specials_) {
+    if (at >= level.extrasBegin) labels_[at - level.extrasBegin] = slot_[at];
+    slot_[at] = -1;
+  }
+}
+
+// Inverse diagonal, kind of each chunk, and the band along solids.
+void Builder::classify(Level& level) {
+  disturbed_.assign(level.chunk.size(), 0);
+  const double unit = level.unit;
+  for (int j = 0; j < level.ny; ++j) {
+    const float* ax = level.row(level.ax, j);
+    const float* ay = level.row(level.ay, j);
+    const float* ayAbove = ay + level.stride;
+    float* id = level.row(level.id, j);
+    for (int c = 0; c < level.chunks; ++c) {
+      const int first = c * kLanes;
+      const int k = j * level.chunks + c;
+      int odd = first + kLanes > level.nx;
+      for (int i = first; i < first + kLanes; ++i)
+        odd |= (ax[i] != 1.0f) | (ax[i + 1] != 1.0f) | (ay[i] != 1.0f) | (ayAbove[i] != 1.0f);
+      if (!odd) {
+        level.chunk[k] = kRegular;
+        std::fill(id + first, id + first + kLanes, 0.25f);
+        continue;
+      }
+      bool any = false;
+      unsigned disturbed = 0;
+      const float high = static_cast<float>(level.widthY[j] / unit);
+      for (int i = first; i < std::min(first + kLanes, level.nx); ++i) {
+        const float d = (ax[i] + ax[i + 1]) + (ay[i] + ayAbove[i]);
+        id[i] = d > 0 ? 1 / d : 0;
+        any |= d > 0;
+        // Compared with what the link would be without solids; sides of the domain do not count.
+        const float wide = static_cast<float>(level.widthX[i] / unit);
+        const auto off = [](float weight, double nominal) {
+          return !(std::fabs(weight - static_cast<float>(nominal)) < 1e-4f);
+        };
+        const bool beside = (i > 0 && off(ax[i], high * unit / level.distanceX[i])) ||
+                            (i + 1 < level.nx && off(ax[i + 1], high * unit / level.distanceX[i + 1])) ||
+                            (j > 0 && off(ay[i], wide * unit / level.distanceY[j])) ||
+                            (j + 1 < level.ny && off(ayAbove[i], wide * unit / level.distanceY[j + 1]));
+        disturbed |= static_cast<unsigned>(beside) << (i - first);
+      }
+      level.chunk[k] = any ? kGeneral : kEmpty;
+      disturbed_[k] = static_cast<std::uint16_t>(disturbed);
+    }
+  }
+  for (int s = 0; s < static_cast<int>(level.specialAt.size()); ++s) {
+    const int i = level.specialCell[s] % level.nx, j = level.specialCell[s] / level.nx;
+    const int k = j * level.chunks + i / kLanes;
+    level.chunk[k] = kGeneral;
+    disturbed_[k] = static_cast<std::uint16_t>(disturbed_[k] | (1u << (i % kLanes)));
+    const int at = level.specialAt[s];
+    if (at < level.extrasBegin)
+      level.id[at] = -level.specialInverse[s];  // in use, but not by the rows' loops
+  }
+  for (int j = 0; j < level.ny; ++j) {
+    std::uint8_t any = 0;
+    for (int c = 0; c < level.chunks; ++c) {
+      const int k = j * level.chunks + c;
+      unsigned near = disturbed_[k];
+      if (j > 0) near |= disturbed_[k - level.chunks];
+      if (j + 1 < level.ny) near |= disturbed_[k + level.chunks];
+      if (c > 0) near |= disturbed_[k - 1] & 0xc000u;
+      if (c + 1 < level.chunks) near |= disturbed_[k + 1] & 0x3u;
+      if (near && !(level.chunk[k] & kEmpty)) {
+        level.chunk[k] |= kBand;
+        any = 1;
+      }
+    }
+    level.rowBand[j] = any;
+  }
+}
+
+std::size_t Builder::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return of(members_) + of(order_) + of(sizes_) + of(labels_) + of(prolong_[0]) + of(prolong_[1]) + of(raw_) +
+         of(slot_) + of(specials_) + of(counts_) + of(entries_) + of(used_) + of(splitChunk_) +
+         of(regularChunk_) + of(disturbed_);
+}
+
+}  // namespace smokebox::multigrid

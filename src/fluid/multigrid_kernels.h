@@ -1,0 +1,201 @@
+// The loops over one row of a multigrid level, in explicit vectors of 16 lanes: compilers do not vectorise
+// red-black rows in place. Every lane does the same operations whatever the instruction set, so the results
+// are the same too.
+//
+// Sums of a row go into 16 lanes, which are then added in a fixed order in float64.
+#pragma once
+#include "fluid/multigrid_level.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors wider than the machine's stay inside inlined functions
+
+namespace smokebox::multigrid {
+
+typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
+typedef int LaneMask __attribute__((vector_size(64)));
+
+#define SMOKEBOX_INLINE inline __attribute__((always_inline))
+
+SMOKEBOX_INLINE Lanes load(const float* p) { return *reinterpret_cast<const Lanes*>(p); }
+SMOKEBOX_INLINE void store(float* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
+
+SMOKEBOX_INLINE double sumOfLanes(const Lanes& v) {
+  double pair[8];
+  for (int k = 0; k < 8; ++k) pair[k] = static_cast<double>(v[k]) + static_cast<double>(v[k + 8]);
+  return ((pair[0] + pair[4]) + (pair[2] + pair[6])) + ((pair[1] + pair[5]) + (pair[3] + pair[7]));
+}
+
+SMOKEBOX_INLINE Lanes magnitude(const Lanes& v) {
+  const LaneMask bits = reinterpret_cast<LaneMask>(v) & 0x7fffffff;
+  return reinterpret_cast<Lanes>(bits);
+}
+
+/// The larger one of each lane; a NaN in `v` is passed on.
+SMOKEBOX_INLINE Lanes larger(const Lanes& v, const Lanes& so_far) { return v <= so_far ? so_far : v; }
+
+SMOKEBOX_INLINE float largestLane(const Lanes& v) {
+  float m = v[0];
+  for (int k = 1; k < kLanes; ++k) m = v[k] <= m ? m : v[k];
+  return m;
+}
+
+/// Lanes of row j that have the given colour (0 red: i + j even).
+SMOKEBOX_INLINE LaneMask lanesOfColour(int j, int colour) {
+  const LaneMask even = {-1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
+  return ((j + colour) & 1) ? ~even : even;
+}
+
+/// A Gauss-Seidel sweep over one colour of row j. bandOnly: only the chunks near solids.
+template <bool bandOnly>
+inline void sweepRow(Level& level, int j, int colour) {
+  if (bandOnly && !level.rowBand[j]) return;
+  const int first = level.specialBegin[2 * j + colour], last = level.specialBegin[2 * j + colour + 1];
+  float* values = level.x.data();
+  for (int s = first; s < last; ++s) {
+    float sum = level.b[level.specialAt[s]];
+    for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e)
+      sum += level.entries[e].weight * values[level.entries[e].to];
+    level.specialValue[s] = sum * level.specialInverse[s];
+  }
+
+  float* x = level.row(level.x, j);
+  const float* below = x - level.stride;
+  const float* above = x + level.stride;
+  const float* b = level.row(level.b, j);
+  const float* ax = level.row(level.ax, j);
+  const float* ay = level.row(level.ay, j);
+  const float* ayAbove = ay + level.stride;
+  const float* id = level.row(level.id, j);
+  const std::uint8_t* kind = level.chunkRow(j);
+  const LaneMask mask = lanesOfColour(j, colour);
+  Lanes left = load(x - 1);
+  for (int c = 0, i = 0; c < level.chunks; ++c, i += kLanes) {
+    if ((bandOnly && !(kind[c] & kBand)) || (kind[c] & kEmpty)) {
+      left = load(x + i + kLanes - 1);
+      continue;
+    }
+    // The left neighbours of the next chunk are loaded before this one is stored: the store would stall the
+    // load.
+    const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
+    Lanes value;
+    if (kind[c] & kRegular) {
+      value = (((left + load(x + i + 1)) + (load(below + i) + load(above + i))) + load(b + i)) * 0.25f;
+    } else {
+      value = (((load(ax + i) * left + load(ax + i + 1) * load(x + i + 1)) +
+                (load(ay + i) * load(below + i) + load(ayAbove + i) * load(above + i))) +
+               load(b + i)) *
+              load(id + i);
+    }
+    left = nextLeft;
+    store(x + i, mask ? value : old);
+  }
+  for (int s = first; s < last; ++s) values[level.specialAt[s]] = level.specialValue[s];
+  level.wrapRow(x);
+}
+
+/// The first sweep (red) from the value 0 everywhere: sets the whole row.
+inline void startRow(Level& level, int j) {
+  float* x = level.row(level.x, j);
+  const float* b = level.row(level.b, j);
+  const float* id = level.row(level.id, j);
+  const std::uint8_t* kind = level.chunkRow(j);
+  const LaneMask mask = lanesOfColour(j, 0);
+  const Lanes zero = {};
+  for (int c = 0, i = 0; c < level.chunks; ++c, i += kLanes) {
+    if (kind[c] & kEmpty) continue;
+    const Lanes value = (kind[c] & kRegular) ? load(b + i) * 0.25f : load(b + i) * load(id + i);
+    store(x + i, mask ? value : zero);
+  }
+  for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)
+    level.x[level.specialAt[s]] = level.b[level.specialAt[s]] * level.specialInverse[s];
+  for (int s = level.specialBegin[2 * j + 1]; s < level.specialBegin[2 * j + 2]; ++s)
+    level.x[level.specialAt[s]] = 0;
+  level.wrapRow(x);
+}
+
+/// Sum over the links of  weight (value here - value there)  in one chunk of a row.
+SMOKEBOX_INLINE Lanes applyChunk(const Level& level, std::uint8_t kind, const float* x,
+                                 std::ptrdiff_t offset) {
+  const float* here = x + offset;
+  const Lanes v = load(here);
+  if (kind & kRegular)
+    return ((4.0f * v - (load(here - 1) + load(here + 1))) - load(here - level.stride)) -
+           load(here + level.stride);
+  const float* ax = level.ax.data() + offset;
+  const float* ay = level.ay.data() + offset;
+  const Lanes sum = (load(ax) * (v - load(here - 1)) + load(ax + 1) * (v - load(here + 1))) +
+                    (load(ay) * (v - load(here - level.stride)) +
+                     load(ay + level.stride) * (v - load(here + level.stride)));
+  const Lanes zero = {};
+  return load(level.id.data() + offset) > 0.0f ? sum : zero;
+}
+
+/// b - A x of row j into its residual row.
+inline void residualOfRow(Level& level, int j) {
+  float* r = level.residualRow(j);
+  const std::uint8_t* kind = level.chunkRow(j);
+  const Lanes zero = {};
+  for (int c = 0, i = 0; c < level.chunks; ++c, i += kLanes) {
+    const std::ptrdiff_t offset = level.at(i, j);
+    if (kind[c] & kEmpty)
+      store(r + i, zero);
+    else
+      store(r + i, load(level.b.data() + offset) - applyChunk(level, kind[c], level.x.data(), offset));
+  }
+  for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 2]; ++s) {
+    const int at = level.specialAt[s];
+    float sum = level.b[at];
+    for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e)
+      sum -= level.entries[e].weight * (level.x[at] - level.x[level.entries[e].to]);
+    if (at >= level.extrasBegin)
+      level.residualExtra[at - level.extrasBegin] = sum;
+    else
+      r[at - level.at(0, j)] = sum;
+  }
+}
+
+/// Adds up the residual rows 2 J and 2 J + 1 into row J of the coarse right-hand side.
+inline void restrictRow(Level& fine, Level& coarse, int J, const float* zeroRow) {
+  const float* lower = fine.residualRow(2 * J);
+  const float* upper = 2 * J + 1 < fine.ny ? fine.residualRow(2 * J + 1) : zeroRow;
+  float* b = coarse.row(coarse.b, J);
+  const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
+  const LaneMask odd = even + 1;
+  for (int c = 0, i = 0; c < coarse.chunks; ++c, i += kLanes) {
+    const Lanes p = load(lower + 2 * i) + load(upper + 2 * i);
+    const Lanes q = load(lower + 2 * i + kLanes) + load(upper + 2 * i + kLanes);
+    store(b + i, __builtin_shuffle(p, q, even) + __builtin_shuffle(p, q, odd));
+  }
+  for (int s = fine.splitBegin[J]; s < fine.splitBegin[J + 1]; ++s) {
+    const Level::Split& split = fine.split[s];
+    float sum = 0;
+    for (int k = split.childBegin; k < split.childEnd; ++k) {
+      const int child = fine.child[k];
+      sum += child < 0 ? fine.residualExtra[~child] : ((child & 1) ? upper : lower)[child >> 1];
+    }
+    coarse.b[split.at] = sum;
+  }
+}
+
+/// Adds the coarse correction to row j.
+inline void prolongRow(Level& fine, const Level& coarse, int j) {
+  float* x = fine.row(fine.x, j);
+  const float* correction = coarse.row(coarse.x, j / 2);
+  const int first = fine.prolongBegin[j], last = fine.prolongBegin[j + 1];
+  for (int s = first; s < last; ++s) {
+    Level::Prolong& p = fine.prolong[s];
+    p.value = fine.x[p.at] + coarse.x[p.parent];
+  }
+  const std::uint8_t* kind = fine.chunkRow(j);
+  const LaneMask twice = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7};
+  for (int c = 0, i = 0; c < fine.chunks; ++c, i += kLanes) {
+    if (kind[c] & kEmpty) continue;
+    store(x + i, load(x + i) + __builtin_shuffle(load(correction + i / 2), twice));
+  }
+  for (int s = first; s < last; ++s) fine.x[fine.prolong[s].at] = fine.prolong[s].value;
+  fine.wrapRow(x);
+}
+
+}  // namespace smokebox::multigrid
+
+#pragma GCC diagnostic pop

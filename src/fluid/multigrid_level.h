@@ -1,0 +1,131 @@
+// One level of the multigrid: a graph of cells whose regular part is a grid.
+//
+// Every block of the level's grid has one *primary* unknown. Where solids cut a block into several parts, the
+// other parts are *extra* unknowns, stored behind the grid in the same arrays. Links between primary unknowns
+// of neighbouring blocks are kept in ax (left face) and ay (lower face); links that touch an extra unknown
+// are kept in lists. Unknowns that have such a link are *special*: the sweeps over rows skip them (their
+// inverse diagonal is 0) and they are done one by one. Parts of one block are never linked, so red-black
+// colouring by block holds for the extra unknowns too.
+//
+// Rows are cut into chunks of 16 cells. Beyond an open side lies a ghost with the value 0; periodic sides
+// keep copies.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace smokebox::multigrid {
+
+template <class T>
+struct AlignedAllocator {
+  using value_type = T;
+  AlignedAllocator() = default;
+  template <class U>
+  explicit AlignedAllocator(const AlignedAllocator<U>&) {}
+  T* allocate(std::size_t n) {
+    void* memory = std::aligned_alloc(64, (n * sizeof(T) + 63) / 64 * 64);
+    if (!memory) throw std::bad_alloc();
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* p, std::size_t) { std::free(p); }
+  bool operator==(const AlignedAllocator&) const { return true; }
+};
+
+using Floats = std::vector<float, AlignedAllocator<float>>;
+
+constexpr int kLanes = 16;  // cells in a chunk
+
+/// What a chunk of 16 cells needs. Bits.
+enum Chunk : std::uint8_t {
+  kGeneral = 0,
+  kRegular = 1,  // all links of all 16 cells are exactly 1
+  kEmpty = 2,    // no cell has a link
+  kBand = 4,     // within two cells of a solid: swept more often
+};
+
+/// From which of its four sides a link leaves a block.
+enum class Towards : std::uint8_t { left, right, down, up };
+
+struct Level {
+  // ---- shape
+  int nx = 0, ny = 0;
+  bool periodicX = false, periodicY = false;
+  int chunks = 0;                         // in a row
+  double unit = 1;                        // edge of a whole block, in cells of the finest grid
+  std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
+  std::ptrdiff_t extrasBegin = 0;         // offset of the first extra unknown
+  int extras = 0;
+  std::vector<double> widthX, widthY;  // of each column and row, in cells of the finest grid
+  std::vector<double> distanceX,
+      distanceY;  // between the centres on both sides of face 0..n, in the same unit
+
+  // ---- unknowns and links
+  Floats x, b;        // value and right-hand side: grid, then extra unknowns
+  Floats ax, ay, id;  // links and inverse diagonal (0: no unknown there, or a special one): grid
+  std::vector<std::uint8_t> chunk;    // ny x chunks
+  std::vector<std::uint8_t> rowBand;  // ny: 1 if any chunk of the row is in the band
+
+  std::vector<int>
+      extraBase;  // per block (offset without margins): first extra unknown in it, -1 if it is whole
+  std::vector<int> extraCell;  // per extra unknown: its block, j nx + i
+
+  // ---- special unknowns, by row, then colour
+  std::vector<int> specialBegin;  // 2 ny + 1: [2 j + colour]
+  std::vector<int> specialAt;     // offset into x
+  std::vector<int> specialCell;   // j nx + i
+  std::vector<float> specialInverse, specialValue;
+  std::vector<int> entryBegin;  // per special unknown, + 1
+  struct Entry {
+    int to;  // offset into x
+    float weight;
+    Towards towards;
+    bool listed;  // false: also kept in ax or ay
+  };
+  std::vector<Entry> entries;
+
+  // ---- to the next coarser level
+  std::vector<std::uint16_t>
+      part;  // per block and extra unknown: which part of its coarse block; valid in split ones
+  std::vector<int> prolongBegin;  // ny + 1: unknowns of a row that do not belong to the primary part
+  struct Prolong {
+    int at, parent;  // offsets into x of this level and of the coarser one
+    float value;     // scratch
+  };
+  std::vector<Prolong> prolong;
+  std::vector<int> splitBegin;  // coarse rows + 1: coarse unknowns whose children are listed
+  struct Split {
+    int at;  // offset into the coarse level's b
+    int childBegin, childEnd;
+  };
+  std::vector<Split> split;
+  std::vector<int> child;  // 2 i + (j & 1) of a primary unknown, ~k of the extra unknown k
+
+  // ---- residual: whole rows; two of them are enough where the sweeps are fused
+  Floats residual;
+  std::vector<float> residualExtra;
+  std::ptrdiff_t residualStride = 0;
+  int residualRows = 0;
+
+  std::ptrdiff_t at(int i, int j) const { return origin + j * stride + i; }
+  float* row(Floats& f, int j) const { return f.data() + at(0, j); }
+  const float* row(const Floats& f, int j) const { return f.data() + at(0, j); }
+  float* residualRow(int j) { return residual.data() + (j % residualRows) * residualStride; }
+  const std::uint8_t* chunkRow(int j) const { return chunk.data() + static_cast<std::size_t>(j) * chunks; }
+  std::uint8_t* chunkRow(int j) { return chunk.data() + static_cast<std::size_t>(j) * chunks; }
+
+  /// Sets the copies beyond the left and right side: the neighbour across a periodic side, else 0.
+  void wrapRow(float* values) const {
+    values[-1] = periodicX ? values[nx - 1] : 0.0f;
+    values[nx] = periodicX ? values[0] : 0.0f;
+  }
+  /// The rows beyond bottom and top, if those are periodic.
+  void wrapRows(Floats& f) const;
+
+  /// Sizes everything that depends on the grid alone. `wholeResidual`: keep all its rows.
+  void shape(int nx, int ny, bool periodicX, bool periodicY, bool wholeResidual);
+  std::size_t bytes() const;
+};
+
+}  // namespace smokebox::multigrid

@@ -1,0 +1,282 @@
+#include "fluid/pressure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "fluid/multigrid.h"
+#include "fluid/multigrid_kernels.h"
+#include "fluid/pressure_flux.h"
+#include "fluid/regions.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+namespace smokebox {
+
+using multigrid::Floats;
+using multigrid::kEmpty;
+using multigrid::kLanes;
+using multigrid::kRegular;
+using multigrid::Lanes;
+using multigrid::Level;
+using multigrid::load;
+using multigrid::store;
+
+namespace {
+
+// The solve aims this much below the tolerance, since the velocity is rounded after it.
+constexpr double kSafety = 0.7;
+// In float32 the running residual parts from the true one: it is computed anew after a fall by this factor.
+constexpr double kTrusted = 1e-4;
+
+double largerOf(double a, double b) { return a <= b ? b : a; }
+
+/// Sum of values[begin, end) (times weights), in float64 and always in the same order.
+double sumOf(const float* values, const float* weights, int begin, int end) {
+  double part[8] = {};
+  for (int i = begin; i < end; i += 8)
+    for (int k = 0; k < std::min(8, end - i); ++k)
+      part[k] += static_cast<double>(values[i + k]) * (weights ? static_cast<double>(weights[i + k]) : 1.0);
+  return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
+}
+
+}  // namespace
+
+struct PressureSolver::Impl {
+  Impl(const Boundary& boundary, ThreadPool& threads)
+      : pool(threads), multigrid(boundary, threads), flux(boundary, threads) {
+    solution = direction = image = multigrid.finest().x;
+    rows.resize(boundary.grid.ny);
+    regions.rebuild(boundary, multigrid.finest());
+  }
+
+  void rebuild(const Boundary& boundary) {
+    multigrid.rebuild(boundary);
+    regions.rebuild(boundary, multigrid.finest());
+    const std::size_t size = static_cast<std::size_t>(multigrid.finest().extrasBegin);
+    rows.resize(boundary.grid.ny);
+    for (Floats* f : {&solution, &direction, &image}) f->assign(size, 0);
+  }
+
+  /// The net flux into b, spread over sealed regions where it does not cancel. m/s.
+  struct Source {
+    double flux = 0, speed = 0, compression = 0;
+  };
+  Source source(const Boundary& boundary, const Field& u, const Field& v);
+
+  /// Conjugate gradients for the right-hand side in b, until the largest residual is at most `target`; the
+  /// solution is left in `solution`. Returns the number of iterations.
+  int solve(double start, double target, int maxIterations);
+  /// direction = x + beta direction, image = A direction; returns their product.
+  double advanceDirection(float beta);
+  /// solution += alpha direction, b -= alpha image; returns the largest |b|.
+  double advanceSolution(float alpha);
+  /// Takes the mean off the solution in sealed regions.
+  void centreSolution();
+
+  ThreadPool& pool;
+  Multigrid multigrid;
+  Regions regions;
+  PressureFlux flux;
+  Floats solution, direction, image;  // on the finest level's grid
+  std::vector<double> rows, sums;
+};
+
+PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& boundary, const Field& u,
+                                                          const Field& v) {
+  Level& level = multigrid.finest();
+  const PressureFlux::Largest largest = flux.measure(boundary, level, u, v, level.b);
+  Source result{largest.flux, largest.speed, 0};
+  if (!regions.anySealed() || std::isnan(largest.flux)) return result;
+
+  const auto& all = regions.regions();
+  sums.assign(all.size(), 0);
+  for (const Regions::Run& run : regions.runs())
+    if (all[run.region].sealed)
+      sums[run.region] += sumOf(level.row(level.b, run.j), nullptr, run.begin, run.end);
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    if (!all[r].sealed) continue;
+    sums[r] /= all[r].volume;
+    result.compression = std::max(result.compression, std::fabs(sums[r]));
+  }
+  // What is left after each cell has taken its share.
+  result.flux = 0;
+  for (const Regions::Run& run : regions.runs()) {
+    float* b = level.row(level.b, run.j);
+    const float* volume = boundary.volume.row(run.j);
+    const Regions::Region& region = all[run.region];
+    const float share = region.sealed ? static_cast<float>(sums[run.region]) : 0.0f;
+    float m = 0;
+    if (region.unweighted || !region.sealed) {
+#pragma omp simd reduction(max : m)
+      for (int i = run.begin; i < run.end; ++i) {
+        b[i] -= share;
+        m = std::max(m, std::fabs(b[i]));
+      }
+    } else {
+#pragma omp simd reduction(max : m)
+      for (int i = run.begin; i < run.end; ++i) {
+        b[i] -= share * volume[i];
+        m = std::max(m, std::fabs(b[i]));
+      }
+    }
+    result.flux = std::max(result.flux, static_cast<double>(m));
+  }
+  return result;
+}
+
+double PressureSolver::Impl::advanceDirection(float beta) {
+  Level& level = multigrid.finest();
+  const int ny = level.ny;
+  const int width = level.chunks * kLanes;
+  const auto combine = [&](int j) {
+    float* p = level.row(direction, j);
+    const float* z = level.row(level.x, j);
+    for (int i = 0; i < width; i += kLanes) store(p + i, load(z + i) + beta * load(p + i));
+    level.wrapRow(p);
+  };
+  const auto apply = [&](int j) {
+    Lanes sum = {};
+    const std::uint8_t* kind = level.chunkRow(j);
+    for (int c = 0; c < level.chunks; ++c) {
+      if (kind[c] & kEmpty) continue;
+      const std::ptrdiff_t offset = level.at(c * kLanes, j);
+      const Lanes value = applyChunk(level, kind[c], direction.data(), offset);
+      store(image.data() + offset, value);
+      sum += value * load(direction.data() + offset);
+    }
+    rows[j] = multigrid::sumOfLanes(sum);
+  };
+  if (pool.threads() == 1 && !level.periodicY) {
+    for (int j = 0; j <= ny; ++j) {
+      if (j < ny) combine(j);
+      if (j > 0) apply(j - 1);
+    }
+  } else {
+    forRows(pool, static_cast<long>(level.nx) * ny, 0, ny, combine);
+    level.wrapRows(direction);
+    forRows(pool, static_cast<long>(level.nx) * ny, 0, ny, apply);
+  }
+  double total = 0;
+  for (double r : rows) total += r;
+  return total;
+}
+
+double PressureSolver::Impl::advanceSolution(float alpha) {
+  Level& level = multigrid.finest();
+  const int width = level.chunks * kLanes;
+  forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
+    float *x = level.row(solution, j), *r = level.row(level.b, j);
+    const float *p = level.row(direction, j), *q = level.row(image, j);
+    Lanes m = {};
+    for (int i = 0; i < width; i += kLanes) {
+      store(x + i, load(x + i) + alpha * load(p + i));
+      const Lanes value = load(r + i) - alpha * load(q + i);
+      store(r + i, value);
+      m = multigrid::larger(multigrid::magnitude(value), m);
+    }
+    rows[j] = multigrid::largestLane(m);
+  });
+  double largest = 0;
+  for (double r : rows) largest = largerOf(r, largest);
+  return largest;
+}
+
+void PressureSolver::Impl::centreSolution() {
+  Level& level = multigrid.finest();
+  if (regions.anySealed()) {
+    const auto& all = regions.regions();
+    sums.assign(all.size(), 0);
+    for (const Regions::Run& run : regions.runs())
+      if (all[run.region].sealed)
+        sums[run.region] += sumOf(level.row(solution, run.j), nullptr, run.begin, run.end);
+    for (std::size_t r = 0; r < all.size(); ++r) sums[r] /= static_cast<double>(all[r].cells);
+    for (const Regions::Run& run : regions.runs()) {
+      if (!all[run.region].sealed) continue;
+      float* x = level.row(solution, run.j);
+      const float mean = static_cast<float>(sums[run.region]);
+      for (int i = run.begin; i < run.end; ++i) x[i] -= mean;
+    }
+  }
+  for (int j = 0; j < level.ny; ++j) level.wrapRow(level.row(solution, j));
+  level.wrapRows(solution);
+}
+
+int PressureSolver::Impl::solve(double start, double target, int maxIterations) {
+  std::fill(solution.begin(), solution.end(), 0.0f);
+  const double enough = std::max(target, start * kTrusted);
+  double product = 0;
+  int iteration = 0;
+  while (iteration < maxIterations) {
+    const double next = multigrid.cycle();
+    if (!(next > 0)) break;  // nothing left to correct, or not a number
+    const double curvature = advanceDirection(iteration == 0 ? 0.0f : static_cast<float>(next / product));
+    if (!(curvature > 0)) break;
+    product = next;
+    ++iteration;
+    const double residual = advanceSolution(static_cast<float>(product / curvature));
+    if (!(residual > enough)) break;
+  }
+  centreSolution();
+  return iteration;
+}
+
+PressureSolver::PressureSolver(const Boundary& boundary, ThreadPool& pool)
+    : impl_(std::make_unique<Impl>(boundary, pool)) {}
+
+PressureSolver::~PressureSolver() = default;
+
+void PressureSolver::rebuild(const Boundary& boundary) { impl_->rebuild(boundary); }
+
+PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& u, Field& v, Field& phi,
+                                               double smallestSpeed, double tolerance, int maxIterations) {
+  Impl& s = *impl_;
+  const Level& level = s.multigrid.finest();
+  s.flux.closeFaces(boundary, level, u, v);
+  Result result;
+  double before = std::numeric_limits<double>::infinity();
+  while (true) {
+    const Impl::Source source = s.source(boundary, u, v);
+    const double speed = largerOf(source.speed, smallestSpeed);
+    result.divergence = source.flux > 0 ? source.flux / speed : source.flux;
+    result.compression = source.compression / boundary.grid.h;
+    if (!std::isfinite(result.divergence) || !std::isfinite(result.compression)) {
+      result.divergence = std::numeric_limits<double>::quiet_NaN();
+      break;
+    }
+    result.converged = result.divergence <= tolerance;
+    // Below the rounding of the velocities nothing more is to be gained.
+    const bool stalled = source.flux > 0.5 * before;
+    if (result.converged || stalled || result.iterations >= maxIterations) break;
+    before = source.flux;
+    const int done = s.solve(source.flux, kSafety * tolerance * speed, maxIterations - result.iterations);
+    if (done == 0) break;
+    result.iterations += done;
+    s.flux.subtractGradient(level, s.solution, u, v);
+    forRows(s.pool, boundary.grid.cells(), 0, level.ny, [&](int j) {
+      float* target = phi.row(j);
+      const float* x = level.row(s.solution, j);
+      for (int i = 0; i < level.nx; ++i) target[i] += x[i];
+    });
+  }
+  return result;
+}
+
+void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v, int cycles) {
+  Impl& s = *impl_;
+  const Level& level = s.multigrid.finest();
+  s.flux.closeFaces(boundary, level, u, v);
+  const Impl::Source source = s.source(boundary, u, v);
+  if (!(source.flux > 0) || !std::isfinite(source.flux)) return;
+  s.solve(source.flux, 0, cycles);
+  s.flux.subtractGradient(level, s.solution, u, v);
+}
+
+std::size_t PressureSolver::bytes() const {
+  const Impl& s = *impl_;
+  return s.multigrid.bytes() + s.regions.bytes() + 3 * s.solution.capacity() * sizeof(float) +
+         2 * s.rows.capacity() * sizeof(double);
+}
+
+}  // namespace smokebox
