@@ -7,9 +7,9 @@
 #include <csignal>
 
 #include "base/errors.h"
-#include "temporary_folder.h"
+#include "support/decoded_film.h"
+#include "support/temporary_folder.h"
 #include "video/sink.h"
-#include "video_decoded.h"
 
 namespace smokebox {
 namespace {

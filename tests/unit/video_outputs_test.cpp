@@ -7,11 +7,11 @@
 #include "base/errors.h"
 #include "base/part_file.h"
 #include "image/png.h"
-#include "temporary_folder.h"
+#include "support/decoded_film.h"
+#include "support/temporary_folder.h"
 #include "video/png_sinks.h"
 #include "video/sink.h"
 #include "video/y4m_sink.h"
-#include "video_decoded.h"
 
 namespace smokebox {
 namespace {

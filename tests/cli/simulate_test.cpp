@@ -1,0 +1,124 @@
+// `simulate` and `plan`, and the figures that scripts rely on.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/run_program.h"
+
+namespace smokebox {
+namespace {
+
+using Json = nlohmann::json;
+
+Json figures(const std::filesystem::path& file) { return Json::parse(fileText(file)); }
+
+TEST(Simulate, WritesTheFiguresOfEachStep) {
+  // One record a step, with every name of the contract, and a summary.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  const RunResult run =
+      runProgram({"simulate", "scene.yaml", "--steps", "7", "--stats", "s.json"}, folder.path());
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json json = figures(folder / "s.json");
+  ASSERT_EQ(json["steps"].size(), 7u);
+  for (int k = 0; k < 7; ++k) {
+    const Json& step = json["steps"][k];
+    for (const char* name : {"step", "time", "ms", "iterations", "divergence", "compression", "smoke",
+                             "momentum", "energy", "contacts", "overlap", "bodies", "probes"})
+      EXPECT_TRUE(step.contains(name)) << name;
+    EXPECT_EQ(step["step"], k + 1);
+    EXPECT_NEAR(step["time"].get<double>(), (k + 1) / 60.0, 1e-12);
+    EXPECT_TRUE(step["ms"].contains("total"));
+    for (const char* name : {"mass", "emitted", "left", "min", "max"})
+      EXPECT_TRUE(step["smoke"].contains(name)) << name;
+    EXPECT_EQ(step["momentum"].size(), 2u);
+    for (const char* name : {"fluid", "bodies"}) EXPECT_TRUE(step["energy"].contains(name)) << name;
+    ASSERT_EQ(step["bodies"].size(), 1u);
+    for (const char* name : {"name", "position", "angle", "velocity", "spin", "force", "torque"})
+      EXPECT_TRUE(step["bodies"][0].contains(name)) << name;
+    ASSERT_EQ(step["probes"].size(), 1u);
+    for (const char* name : {"name", "velocity", "pressure", "smoke", "temperature", "mass"})
+      EXPECT_TRUE(step["probes"][0].contains(name)) << name;
+  }
+  for (const char* name : {"scene", "version", "steps", "cells", "threads", "step_ms_median", "film_fps",
+                           "divergence_max", "smoke_error", "overlap_max", "peak_memory_mb", "state_hash"})
+    EXPECT_TRUE(json["summary"].contains(name)) << name;
+  EXPECT_EQ(json["summary"]["scene"], "scene");
+  EXPECT_EQ(json["summary"]["cells"], 32 * 16);
+  EXPECT_LE(json["summary"]["divergence_max"].get<double>(), 1e-5);
+  EXPECT_LE(std::abs(json["summary"]["smoke_error"].get<double>()), 1e-5);
+}
+
+TEST(Simulate, HashDoesNotDependOnThreads) {
+  // One and two threads end in the same state.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  for (const char* threads : {"1", "2"}) {
+    const RunResult run = runProgram({"simulate", "scene.yaml", "--steps", "100", "--threads", threads,
+                                      "--stats", std::string(threads) + ".json"},
+                                     folder.path());
+    ASSERT_EQ(run.status, 0) << run.err;
+  }
+  const Json one = figures(folder / "1.json")["summary"], two = figures(folder / "2.json")["summary"];
+  EXPECT_EQ(one["steps"], 100);
+  EXPECT_EQ(two["threads"], 2);
+  EXPECT_EQ(one["state_hash"], two["state_hash"]);
+}
+
+TEST(Simulate, RunsTheDurationOfTheScene) {
+  // Without --steps there are duration / step of them, and the summary is on standard output.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  const RunResult run = runProgram({"simulate", "scene.yaml"}, folder.path());
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("30 steps"), std::string::npos) << run.out;
+  EXPECT_EQ(folder.names(), std::set<std::string>{"scene.yaml"});
+}
+
+TEST(Simulate, FullDiskIsAnInputOutputError) {
+  // Whether the figures or the summary do not fit, the status is 4.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  const RunResult stats =
+      runProgram({"simulate", "scene.yaml", "--steps", "1", "--stats", "/dev/full"}, folder.path());
+  EXPECT_EQ(stats.status, 4);
+  EXPECT_NE(stats.err.find("/dev/full: No space left"), std::string::npos) << stats.err;
+  const RunResult summary =
+      runProgram({"simulate", "scene.yaml", "--steps", "1"}, folder.path(), "/dev/full");
+  EXPECT_EQ(summary.status, 4);
+  EXPECT_NE(summary.err.find("standard output: No space left"), std::string::npos) << summary.err;
+}
+
+TEST(Simulate, FiguresThatCannotBeWrittenAreFoundBeforeTheRun) {
+  // A folder that is not there is told before the first step, however long the scene.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  const RunResult run = runProgram(
+      {"simulate", "scene.yaml", "--steps", "1000000000", "--stats", "nowhere/s.json"}, folder.path());
+  EXPECT_EQ(run.status, 4);
+  EXPECT_NE(run.err.find("nowhere"), std::string::npos) << run.err;
+}
+
+TEST(Simulate, CtrlCEndsItWith130) {
+  // An interrupted run says so by its status, and writes no figures.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  ProgramRun run({"simulate", "scene.yaml", "--steps", "1000000000", "--stats", "s.json"}, folder.path());
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait().status, 130);
+  EXPECT_EQ(folder.names(), std::set<std::string>{"scene.yaml"});
+}
+
+TEST(Plan, SaysWhatIsModelledAndWhatNot) {
+  // Cells, memory and stages of the scene are listed.
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml", kSmallScene);
+  const RunResult run = runProgram({"plan", "scene.yaml"}, folder.path());
+  EXPECT_EQ(run.status, 0) << run.err;
+  for (const char* word : {"32 x 16 cells", "15 frames", "1 solids", "MB", "\n  + ", "\n  - "})
+    EXPECT_NE(run.out.find(word), std::string::npos) << word << "\n" << run.out;
+}
+
+}  // namespace
+}  // namespace smokebox
