@@ -1,0 +1,39 @@
+#include "render/picture_frame.h"
+
+#include <algorithm>
+
+namespace smokebox {
+
+namespace {
+/// Rec. 709 luminance of the linear colour, roughly enough to tell a dark ground from a light one.
+bool isDark(const Color& c) { return 0.2126 * c.r * c.r + 0.7152 * c.g * c.g + 0.0722 * c.b * c.b < 0.18; }
+}  // namespace
+
+PictureFrame frameOf(const Snapshot& snapshot, int width, int height) {
+  const Grid& grid = snapshot.grid;
+  const CameraSpec& camera = snapshot.view.camera;
+  PictureFrame frame;
+  frame.width = width;
+  frame.height = height;
+  frame.scale =
+      camera.height ? height / *camera.height : std::min(width / grid.width(), height / grid.height());
+  const Vec2 middle{grid.width() / 2, grid.height() / 2};
+  frame.centre = camera.center.value_or(middle);
+  if (!camera.follow.empty()) {
+    const auto followed = std::find_if(snapshot.solids.begin(), snapshot.solids.end(),
+                                       [&](const SolidPicture& s) { return s.name == camera.follow; });
+    if (followed != snapshot.solids.end())
+      frame.centre = followed->pose.position + camera.center.value_or(Vec2{});
+  }
+  const Vec2 upperLeft = frame.toPixels({0, grid.height()});
+  const Vec2 lowerRight = frame.toPixels({grid.width(), 0});
+  frame.left = upperLeft.x;
+  frame.top = upperLeft.y;
+  frame.right = lowerRight.x;
+  frame.bottom = lowerRight.y;
+  frame.unit = height / 720.0;
+  frame.darkGround = isDark(snapshot.view.background);
+  return frame;
+}
+
+}  // namespace smokebox
