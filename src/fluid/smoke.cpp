@@ -1,0 +1,417 @@
+#include "fluid/smoke.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid/smoke_spread.h"
+#include "fluid/smoke_volumes.h"
+#include "fluid/sweep.h"
+
+namespace smokebox {
+namespace {
+
+constexpr int kGrain = 32;
+constexpr float kSliver = 0.25f;
+
+// The smallest power of two q with value <= 2^23 q: twice as much still fits into the exact range of float32.
+float quantumFor(float value) {
+  int exponent = 0;
+  const float mantissa = std::frexp(value, &exponent);
+  return std::ldexp(1.0f, std::max(mantissa == 0.5f ? exponent - 1 : exponent, -60) - 23);
+}
+
+struct Channel {
+  Field mass, value;
+  Quantum quantum;
+  float highest = 0;  // largest value
+  Activity active;
+  double emitted = 0, left = 0;  // in cell areas
+};
+
+// Smoke of a cell that closed with no open cell in reach.
+struct Trapped {
+  int channel, cell;
+  double mass;
+};
+
+}  // namespace
+
+struct Smoke::Impl {
+  ThreadPool& pool;
+  SmokeVolumes volumes;
+  Sweeper sweeper;
+  MassSpread spread;
+  std::vector<Channel> channels;
+  Field massOut, valueOut, volumeA, volumeB;
+  Activity activeOut;
+  std::vector<Trapped> trapped;
+  std::vector<float> clusterMass, clusterVolume;
+  Field lastVolume;  // open shares at the end of the last step
+  double cellArea;
+  bool yFirst = false;
+
+  Impl(const Boundary& b, ThreadPool& threads, int count)
+      : pool(threads),
+        volumes(b),
+        sweeper(b.grid.nx, b.grid.ny),
+        channels(count),
+        massOut(b.grid.nx, b.grid.ny),
+        valueOut(b.grid.nx, b.grid.ny),
+        volumeA(b.grid.nx, b.grid.ny, 1),
+        activeOut(b.grid.nx, b.grid.ny),
+        cellArea(b.grid.h * b.grid.h) {
+    for (Channel& c : channels) {
+      c.mass = Field(b.grid.nx, b.grid.ny);
+      c.value = Field(b.grid.nx, b.grid.ny);
+      c.active = Activity(b.grid.nx, b.grid.ny);
+    }
+  }
+
+  void setQuantum(Channel& c, float q) { c.quantum = {q, 1 / q}; }
+  void makeRoom(int channel, float highest);
+  void begin(int channel);
+  void release(const Boundary& b);
+  void shareValues(Channel& c, const Field& volume);
+  void donorClusters(const Channel& c, Axis axis, const Field& volume);
+  void fillMargins(Channel& c, Axis axis);
+  void endClusters(Channel& c, const Boundary& b);
+  void touch(Channel& c, int cell) {
+    c.active.at(volumes.cells().i(cell) / Activity::kStrip, volumes.cells().j(cell)) = 1;
+  }
+  void wrapActivity(Channel& c) {
+    if (!volumes.cells().periodicY) return;
+    const int ny = volumes.cells().ny;
+    for (int s = 0; s < c.active.strips(); ++s)
+      for (int k = 1; k <= 4; ++k) {
+        c.active.at(s, -k) = c.active.at(s, ny - k);
+        c.active.at(s, ny - 1 + k) = c.active.at(s, k - 1);
+      }
+  }
+};
+
+// Coarsens the quantum if values up to `highest` need it; what rounding takes from a cell goes to the next
+// one with smoke, and what is left at the end to the trapped remainder.
+void Smoke::Impl::makeRoom(int channel, float highest) {
+  Channel& c = channels[channel];
+  if (highest <= 0) return;
+  const float needed = quantumFor(highest);
+  if (c.quantum.size == 0 || (c.quantum.size >= 4 * needed && c.highest > 0)) setQuantum(c, needed);
+  if (needed <= c.quantum.size) return;
+  setQuantum(c, needed);
+  double carried = 0;
+  for (int j = 0; j < c.mass.ny(); ++j) {
+    float* m = c.mass.row(j);
+    for (int i = 0; i < c.mass.nx(); ++i) {
+      if (!(m[i] > 0)) continue;
+      const double exact = m[i] + carried;
+      m[i] = static_cast<float>(std::floor(exact / needed + 0.5) * needed);
+      if (m[i] < 0) m[i] = 0;
+      carried = exact - m[i];
+    }
+  }
+  if (carried != 0) trapped.push_back({channel, 0, carried});
+}
+
+// What the solids push from cell to cell.
+void Smoke::Impl::begin(int channel) {
+  Channel& c = channels[channel];
+  const SmokeCells& cells = volumes.cells();
+  const Quantum q = c.quantum;
+  for (const SmokeTransfer& t : volumes.plan().transfers()) {
+    float& from = c.mass(cells.i(t.from), cells.j(t.from));
+    const float moved = t.share >= 1 ? from : std::floor(from * t.share * q.inverse) * q.size;
+    if (!(moved > 0)) continue;
+    from -= moved;
+    if (t.to < 0) {
+      trapped.push_back({channel, t.from, moved});
+      continue;
+    }
+    c.mass(cells.i(t.to), cells.j(t.to)) += moved;
+    touch(c, t.to);
+  }
+}
+
+// Gives back what was kept aside, where a cell has opened near by.
+void Smoke::Impl::release(const Boundary& b) {
+  const SmokeCells& cells = volumes.cells();
+  for (Trapped& t : trapped) {
+    Channel& c = channels[t.channel];
+    if (!(t.mass >= c.quantum.size) || c.quantum.size == 0) continue;
+    const int to = volumes.plan().nearestOpen(cells, b.volume, t.cell);
+    if (to < 0) continue;
+    const float moved = static_cast<float>(std::floor(t.mass * c.quantum.inverse) * c.quantum.size);
+    c.mass(cells.i(to), cells.j(to)) += moved;
+    t.mass -= moved;
+    touch(c, to);
+  }
+  std::erase_if(trapped, [](const Trapped& t) { return t.mass == 0; });
+}
+
+// Values of the cells that are not full, from mass and volume; one for each cluster.
+void Smoke::Impl::shareValues(Channel& c, const Field& volume) {
+  const SmokeCells& cells = volumes.cells();
+  const CellClusters& clusters = volumes.clusters();
+  for (int k = 0; k < clusters.count(); ++k) {
+    double m = 0, v = 0;
+    for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
+      m += c.mass(cells.i(*cell), cells.j(*cell));
+      v += volume(cells.i(*cell), cells.j(*cell));
+    }
+    const float value = m > 0 ? static_cast<float>(m / std::max(v, 1e-6)) : 0.0f;
+    for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
+      c.value(cells.i(*cell), cells.j(*cell)) = value;
+      if (m > 0) touch(c, *cell);
+    }
+  }
+}
+
+// Mass and volume of each cluster after the donor fluxes of one sweep.
+void Smoke::Impl::donorClusters(const Channel& c, Axis axis, const Field& volume) {
+  const SmokeCells& cells = volumes.cells();
+  const CellClusters& clusters = volumes.clusters();
+  const Field& courant = volumes.courant(axis);
+  const int di = axis == Axis::x, dj = 1 - di;
+  clusterMass.resize(clusters.count());
+  clusterVolume.resize(clusters.count());
+  for (int k = 0; k < clusters.count(); ++k) {
+    double m = 0, v = 0;
+    for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
+      const int i = cells.i(*cell), j = cells.j(*cell);
+      const float low = courant(i, j), high = courant(i + di, j + dj);
+      const bool clean =
+          (axis == Axis::x ? i == 0 && !cells.periodicX : j == 0 && !cells.periodicY) && low > 0;
+      const bool cleanHigh =
+          (axis == Axis::x ? i == cells.nx - 1 && !cells.periodicX : j == cells.ny - 1 && !cells.periodicY) &&
+          high < 0;
+      const float in = clean ? 0.0f : low * (low > 0 ? c.value(i - di, j - dj) : c.value(i, j));
+      const float out = cleanHigh ? 0.0f : high * (high > 0 ? c.value(i, j) : c.value(i + di, j + dj));
+      m += static_cast<double>(c.mass(i, j)) - (static_cast<double>(out) - in);
+      v += volume(i, j) - (high - low);
+    }
+    clusterMass[k] = static_cast<float>(m);
+    clusterVolume[k] = static_cast<float>(v);
+  }
+}
+
+void Smoke::Impl::fillMargins(Channel& c, Axis axis) {
+  const SmokeCells& cells = volumes.cells();
+  const int nx = cells.nx, ny = cells.ny;
+  const Field& courant = volumes.courant(axis);
+  if (axis == Axis::x ? cells.periodicX : cells.periodicY) {
+    wrapMargin(c.mass, axis, nx, ny, false);
+    wrapMargin(c.value, axis, nx, ny, false);
+    return;
+  }
+  // Walls and outflows continue the last value, inflows bring clean air.
+  if (axis == Axis::x) {
+    for (int j = 0; j < ny; ++j) {
+      float* r = c.value.row(j);
+      const float low = courant(0, j) > 0 ? 0.0f : r[0], high = courant(nx, j) < 0 ? 0.0f : r[nx - 1];
+      for (int k = 1; k <= 4; ++k) {
+        r[-k] = low;
+        r[nx - 1 + k] = high;
+      }
+    }
+  } else {
+    for (int k = 1; k <= 4; ++k) {
+      const float *first = c.value.row(0), *last = c.value.row(ny - 1);
+      const float *low = courant.row(0), *high = courant.row(ny);
+      float *below = c.value.row(-k), *above = c.value.row(ny - 1 + k);
+      for (int i = 0; i < nx; ++i) {
+        below[i] = low[i] > 0 ? 0.0f : first[i];
+        above[i] = high[i] < 0 ? 0.0f : last[i];
+      }
+    }
+  }
+}
+
+// Shares the mass of each cluster out among its cells by their open area.
+void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
+  const SmokeCells& cells = volumes.cells();
+  const CellClusters& clusters = volumes.clusters();
+  const Quantum q = c.quantum;
+  for (int k = 0; k < clusters.count(); ++k) {
+    double m = 0, v = 0;
+    int largest = *clusters.begin(k);
+    for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
+      const int i = cells.i(*cell), j = cells.j(*cell);
+      m += c.mass(i, j);
+      v += b.volume(i, j);
+      if (b.volume(i, j) > b.volume(cells.i(largest), cells.j(largest))) largest = *cell;
+    }
+    const double value = v > 0 ? m / v : 0;
+    double rest = m;
+    for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
+      const int i = cells.i(*cell), j = cells.j(*cell);
+      const double part = std::floor(value * b.volume(i, j) * q.inverse) * q.size;
+      rest -= part;
+      c.mass(i, j) = static_cast<float>(part);
+      c.value(i, j) = b.volume(i, j) > 0 ? static_cast<float>(value) : 0.0f;
+      if (m > 0) touch(c, *cell);
+    }
+    c.mass(cells.i(largest), cells.j(largest)) += static_cast<float>(rest);
+    c.highest = std::max(c.highest, static_cast<float>(value));
+  }
+}
+
+Smoke::Smoke(const Boundary& boundary, ThreadPool& pool, int channels)
+    : impl_(std::make_unique<Impl>(boundary, pool, channels)) {
+  impl_->lastVolume = boundary.volume;
+}
+
+Smoke::~Smoke() = default;
+
+int Smoke::channels() const { return static_cast<int>(impl_->channels.size()); }
+
+const Field& Smoke::value(int channel) const { return impl_->channels[channel].value; }
+
+void Smoke::add(const Boundary& boundary, int channel, const Field& share, double amount) {
+  Impl& s = *impl_;
+  Channel& c = s.channels[channel];
+  if (amount == 0) return;
+  s.makeRoom(channel, static_cast<float>(c.highest + std::max(amount, 0.0)));
+  if (c.quantum.size == 0) return;  // nothing there to be taken away
+  const double inverse = c.quantum.inverse, size = c.quantum.size;
+  double added = 0;
+  for (int j = 0; j < c.mass.ny(); ++j) {
+    const float *part = share.row(j), *open = boundary.volume.row(j);
+    float *m = c.mass.row(j), *value = c.value.row(j);
+    for (int i = 0; i < c.mass.nx(); ++i) {
+      if (!(part[i] > 0) || !(open[i] > 0)) continue;
+      const double wanted = amount * part[i] * open[i] * inverse;
+      double more = (open[i] < kSliver ? std::floor(wanted) : std::floor(wanted + 0.5)) * size;
+      if (m[i] + more < 0) more = -m[i];
+      m[i] = static_cast<float>(m[i] + more);
+      added += more;
+      value[i] = m[i] / open[i];
+      c.highest = std::max(c.highest, value[i]);
+      c.active.at(i / Activity::kStrip, j) = 1;
+    }
+  }
+  c.emitted += added;
+}
+
+void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double dt) {
+  Impl& s = *impl_;
+  SmokeVolumes& volumes = s.volumes;
+  volumes.prepare(b, u, v, dt, s.pool);
+  const SmokeCells& cells = volumes.cells();
+  for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest);
+  if (volumes.moved()) s.release(b);
+
+  Field& start = volumes.start();
+  for (int k = 0; k < channels(); ++k) {
+    Channel& c = s.channels[k];
+    if (volumes.moved()) {
+      s.begin(k);
+      auto renew = [&](int cell) {
+        if (cell < 0) return;
+        const int i = cells.i(cell), j = cells.j(cell);
+        c.value(i, j) = c.mass(i, j) > 0 ? c.mass(i, j) / std::max(start(i, j), 1e-6f) : 0.0f;
+      };
+      for (int cell : volumes.cut()) renew(cell);
+      for (const SmokeTransfer& t : volumes.plan().transfers()) renew(t.from), renew(t.to);
+    }
+    s.shareValues(c, start);
+  }
+
+  const int passes = 2 * volumes.parts();
+  if (passes > 2 && s.volumeB.empty()) s.volumeB = Field(cells.nx, cells.ny, 1);
+  for (int pass = 0; pass < passes; ++pass) {
+    // x y, y x, x y, ... within a step and from step to step.
+    const bool alongY = (((pass + 1) / 2) % 2 == 1) != s.yFirst;
+    const Axis axis = alongY ? Axis::y : Axis::x;
+    const bool last = pass == passes - 1, periodic = alongY ? cells.periodicY : cells.periodicX;
+    Field& volume = pass == 0 ? start : pass % 2 ? s.volumeA : s.volumeB;
+    Field& next = pass % 2 ? s.volumeB : s.volumeA;
+    if (!last) volumes.advance(axis, volume, next, s.pool);
+    if (periodic) wrapMargin(volume, axis, cells.nx, cells.ny, false);
+    for (int k = 0; k < channels(); ++k) {
+      Channel& c = s.channels[k];
+      if (c.highest == 0) continue;
+      s.fillMargins(c, axis);
+      s.wrapActivity(c);
+      s.donorClusters(c, axis, volume);
+      SweepJob job;
+      job.axis = axis;
+      job.nx = cells.nx;
+      job.ny = cells.ny;
+      job.periodic = periodic;
+      job.courant = &volumes.courant(axis);
+      job.volume = &volume;
+      job.divisor = last ? &volumes.measure(b) : nullptr;
+      job.mass = &c.mass;
+      job.value = &c.value;
+      job.massOut = &s.massOut;
+      job.valueOut = &s.valueOut;
+      job.highest = c.highest;
+      job.quantum = c.quantum;
+      job.irregular = &volumes.irregular().faces(axis);
+      job.roots = &volumes.clusters().roots(axis);
+      job.clusterMass = s.clusterMass.data();
+      job.clusterVolume = s.clusterVolume.data();
+      job.active = &c.active;
+      job.activeOut = &s.activeOut;
+      const SweepResult result = s.sweeper.run(job, s.pool);
+      c.mass.swap(s.massOut);
+      c.value.swap(s.valueOut);
+      c.active.swap(s.activeOut);
+      if (!periodic) c.left += result.throughHigh - result.throughLow;
+      if (!last) {
+        s.shareValues(c, next);
+      } else {
+        const float before = c.highest;
+        c.highest = result.highest;
+        s.endClusters(c, b);
+        if (c.highest > before)
+          c.highest = s.spread.run(cells, b, before, c.quantum, c.mass, c.value, c.active);
+      }
+    }
+  }
+  s.yFirst = !s.yFirst;
+  if (volumes.moved()) s.lastVolume = b.volume;
+  volumes.finish(b);
+}
+
+Smoke::Totals Smoke::totals() const {
+  Impl& s = *impl_;
+  Totals totals;
+  bool any = false;
+  for (const Channel& c : s.channels) {
+    totals.mass += s.pool.sum(0, c.mass.ny(), kGrain, [&](int begin, int end) {
+      double sum = 0;
+      for (int j = begin; j < end; ++j) {
+        const float* m = c.mass.row(j);
+        for (int i = 0; i < c.mass.nx(); ++i) sum += m[i];
+      }
+      return sum;
+    });
+    totals.emitted += c.emitted;
+    totals.left += c.left;
+    for (int j = 0; j < c.mass.ny(); ++j) {
+      const float *r = c.value.row(j), *open = s.lastVolume.row(j);
+      for (int i = 0; i < c.mass.nx(); ++i) {
+        if (!(open[i] > 0)) continue;
+        totals.min = any ? std::min(totals.min, static_cast<double>(r[i])) : r[i];
+        totals.max = any ? std::max(totals.max, static_cast<double>(r[i])) : r[i];
+        any = true;
+      }
+    }
+  }
+  for (const Trapped& t : s.trapped) totals.mass += t.mass;
+  totals.mass *= s.cellArea;
+  totals.emitted *= s.cellArea;
+  totals.left *= s.cellArea;
+  return totals;
+}
+
+std::size_t Smoke::bytes() const {
+  const Impl& s = *impl_;
+  std::size_t sum = s.volumes.bytes() + s.sweeper.bytes() + s.spread.bytes();
+  for (const Channel& c : s.channels) sum += c.mass.bytes() + c.value.bytes();
+  for (const Field* f : {&s.massOut, &s.valueOut, &s.volumeA, &s.volumeB, &s.lastVolume})
+    if (!f->empty()) sum += f->bytes();
+  return sum;
+}
+
+}  // namespace smokebox

@@ -1,0 +1,196 @@
+#include "fluid/smoke_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace smokebox {
+namespace {
+constexpr int kGrain = 16;
+constexpr int kReach = 4;          // rows and columns of margin that the sweeps read
+constexpr float kMostOut = 0.95f;  // as in smoke_merge.cpp
+constexpr float kLargest = 4096;   // cells per step; keeps infinities out
+constexpr float kLeastVolume =
+    0.1f;  // that a velocity which is not free of divergence may leave of a full cell
+}  // namespace
+
+void wrapMargin(Field& f, Axis axis, int nx, int ny, bool faces) {
+  if (axis == Axis::x) {
+    for (int j = 0; j < ny; ++j) {
+      float* row = f.row(j);
+      if (faces) row[nx] = row[0];
+      for (int k = 1; k <= kReach; ++k) {
+        row[-k] = row[nx - k];
+        row[nx - 1 + k] = row[k - 1];
+      }
+    }
+  } else {
+    const std::size_t size = nx * sizeof(float);
+    for (int k = 1; k <= kReach; ++k) {
+      std::memcpy(f.row(-k), f.row(ny - k), size);
+      std::memcpy(f.row(ny - 1 + k), f.row(k - 1), size);
+    }
+  }
+}
+
+SmokeVolumes::SmokeVolumes(const Boundary& b)
+    : cells_(b),
+      courantX_(cells_.nx, cells_.ny),
+      courantY_(cells_.nx, cells_.ny),
+      start_(cells_.nx, cells_.ny, 1),
+      openXBefore_(b.openX),
+      openYBefore_(b.openY),
+      volumeBefore_(b.volume) {
+  version_ = b.version;
+  for (int j = 0; j < cells_.ny; ++j)
+    for (int i = 0; i < cells_.nx; ++i) start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
+}
+
+std::size_t SmokeVolumes::bytes() const {
+  std::size_t sum = cut_.capacity() * sizeof(int) + plan_.bytes() + clusters_.bytes() + irregular_.bytes();
+  for (const Field* f :
+       {&courantX_, &courantY_, &start_, &measure_, &openXBefore_, &openYBefore_, &volumeBefore_})
+    if (!f->empty()) sum += f->bytes();
+  return sum;
+}
+
+// Courant numbers of the whole step; into how many parts the full cells need it cut.
+float SmokeVolumes::flows(const Boundary& b, const Field& u, const Field& v, double dt, ThreadPool& pool) {
+  const int nx = cells_.nx, ny = cells_.ny;
+  const float s = static_cast<float>(dt / b.grid.h);
+  auto flow = [s](int n, const float* open, const float* speed, float* c) {
+#pragma omp simd
+    for (int i = 0; i < n; ++i) c[i] = std::min(std::max(open[i] * speed[i] * s, -kLargest), kLargest);
+  };
+  // An inflow drives fluid through a closed face.
+  auto driven = [s](float open, float speed, float wall) { return (open * speed + (1 - open) * wall) * s; };
+  const bool left = b.side(Side::left).kind == WallKind::inflow,
+             right = b.side(Side::right).kind == WallKind::inflow;
+  pool.blocks(0, ny + 1, kGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      flow(nx, b.openY.row(j), v.row(j), courantY_.row(j));
+      if (j == ny) break;
+      float* c = courantX_.row(j);
+      flow(nx + 1, b.openX.row(j), u.row(j), c);
+      if (left) c[0] = driven(b.openX(0, j), u(0, j), b.wallU(0, j));
+      if (right) c[nx] = driven(b.openX(nx, j), u(nx, j), b.wallU(nx, j));
+      if (cells_.periodicX) c[nx] = c[0];
+    }
+  });
+  for (int j : {0, ny})
+    if (b.side(j == 0 ? Side::bottom : Side::top).kind == WallKind::inflow)
+      for (int i = 0; i < nx; ++i) courantY_(i, j) = driven(b.openY(i, j), v(i, j), b.wallV(i, j));
+  if (cells_.periodicY) std::copy_n(courantY_.row(0), nx, courantY_.row(ny));
+
+  const double parts = pool.max(0, ny, kGrain, 0, [&](int begin, int end) {
+    float most = 0;
+    for (int j = begin; j < end; ++j) {
+      const float *x = courantX_.row(j), *low = courantY_.row(j), *high = courantY_.row(j + 1),
+                  *vol = start_.row(j);
+      const float* after = b.volume.row(j);
+      float lanes[16] = {};
+      auto cell = [&](int i, float& lane) {
+        const float netX = x[i + 1] - x[i], netY = high[i] - low[i];
+        const float outX = std::max(x[i + 1], 0.0f) - std::min(x[i], 0.0f);
+        const float outY = std::max(high[i], 0.0f) - std::min(low[i], 0.0f);
+        const float least = std::min(1.0f, std::max(1 - netX - netY, kLeastVolume));
+        const float need = std::max(outX * (1 / kMostOut) + std::max(netY, 0.0f),
+                                    outY * (1 / kMostOut) + std::max(netX, 0.0f)) /
+                           least;
+        const bool full = vol[i] == 1 && after[i] == 1;
+        lane = std::max(lane, full ? need : 0.0f);
+      };
+      int i = 0;
+      for (; i + 16 <= nx; i += 16)
+#pragma omp simd
+        for (int k = 0; k < 16; ++k) cell(i + k, lanes[k]);
+      for (; i < nx; ++i) cell(i, lanes[0]);
+      for (float lane : lanes) most = std::max(most, lane);
+    }
+    return static_cast<double>(most);
+  });
+  return static_cast<float>(parts);
+}
+
+void SmokeVolumes::scale(float factor, ThreadPool& pool) {
+  pool.blocks(0, cells_.ny + 1, kGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      float *x = courantX_.row(j), *y = courantY_.row(j);
+      for (int i = 0; i < cells_.nx; ++i) y[i] *= factor;
+      if (j < cells_.ny)
+        for (int i = 0; i <= cells_.nx; ++i) x[i] *= factor;
+    }
+  });
+}
+
+void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, double dt, ThreadPool& pool) {
+  moved_ = b.version != version_;
+  if (moved_ || stale_) irregular_.find(cells_, b, volumeBefore_, cut_);
+  stale_ = moved_;
+  for (int c : cut_) {
+    const int i = cells_.i(c), j = cells_.j(c);
+    const float share = moved_ ? volumeBefore_(i, j) : b.volume(i, j);
+    start_(i, j) = share > 0 ? share : 1.0f;
+  }
+  const float parts = flows(b, u, v, dt, pool);
+  float full = std::max(1.0f, parts);
+  if (full > kMostParts) {
+    scale(kMostParts / full, pool);
+    full = kMostParts;
+  }
+  parts_ = static_cast<int>(std::ceil(full));
+  plan_.clear();
+  if (moved_)
+    plan_.plan(cells_, cut_, {&openXBefore_, &openYBefore_, &volumeBefore_}, {&b.openX, &b.openY, &b.volume},
+               courantX_, courantY_, start_);
+  if (!cut_.empty()) {
+    parts_ =
+        clusters_.build(cells_, cut_, b, volumeBefore_, start_, courantX_, courantY_, parts_, kMostParts);
+    irregular_.choose(cells_, b, clusters_);
+    if (measure_.empty()) measure_ = Field(cells_.nx, cells_.ny, 1);
+    for (int c : cut_) measure_(cells_.i(c), cells_.j(c)) = b.volume(cells_.i(c), cells_.j(c));
+    for (int k = 0; k < clusters_.count(); ++k)
+      for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m)
+        measure_(cells_.i(*m), cells_.j(*m)) = 0;
+  } else {
+    clusters_.clear(cells_);
+    irregular_.choose(cells_, b, clusters_);
+  }
+  if (parts_ > 1) scale(1.0f / parts_, pool);
+  if (cells_.periodicX) wrapMargin(courantX_, Axis::x, cells_.nx, cells_.ny, true);
+  if (cells_.periodicY) wrapMargin(courantY_, Axis::y, cells_.nx, cells_.ny, true);
+}
+
+void SmokeVolumes::finish(const Boundary& b) {
+  auto settle = [&](int c) {
+    if (c < 0) return;
+    const int i = cells_.i(c), j = cells_.j(c);
+    start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
+    if (!measure_.empty()) measure_(i, j) = b.volume(i, j);
+  };
+  for (int c : cut_) settle(c);
+  for (const SmokeTransfer& t : plan_.transfers()) settle(t.from), settle(t.to);
+  for (int k = 0; k < clusters_.count(); ++k)
+    for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) settle(*m);
+  if (moved_) {
+    openXBefore_ = b.openX;
+    openYBefore_ = b.openY;
+    volumeBefore_ = b.volume;
+    version_ = b.version;
+  }
+}
+
+void SmokeVolumes::advance(Axis axis, const Field& volume, Field& next, ThreadPool& pool) const {
+  const int nx = cells_.nx;
+  pool.blocks(0, cells_.ny, kGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      const float* low = courant(axis).row(j);
+      const float *high = axis == Axis::x ? low + 1 : courant(axis).row(j + 1), *from = volume.row(j);
+      float* to = next.row(j);
+#pragma omp simd
+      for (int i = 0; i < nx; ++i) to[i] = from[i] - (high[i] - low[i]);
+    }
+  });
+}
+
+}  // namespace smokebox

@@ -1,0 +1,331 @@
+#include "fluid/sweep.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace smokebox {
+namespace {
+
+constexpr int kStrip = Activity::kStrip;
+constexpr int kTileRows = 32;
+constexpr int kRowGrain = 16;
+constexpr int kPad = 32;
+constexpr float kTiny = 1e-30f;
+// Fluxes out of cells with less than this many quanta are rounded towards zero, so that none is overdrawn.
+constexpr float kRoundingFloor = 1024;
+
+// The donor flux through faces [0, n) and what the reconstruction adds to it. Pointers are to the first face;
+// `d` is the distance between a face's high cell and its low cell.
+template <class Step>
+void fluxes(int n, const float* __restrict c, const float* __restrict r, const float* __restrict v, Step d,
+            float highest, float* __restrict donor, float* __restrict extra) {
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    const float flow = c[k];
+    const bool up = flow > 0;
+    const float l3 = r[k - 3 * d], l2 = r[k - 2 * d], l1 = r[k - d], h1 = r[k], h2 = r[k + d],
+                h3 = r[k + 2 * d];
+    const float a = up ? l3 : h3, b = up ? l2 : h2, mid = up ? l1 : h1, e = up ? h1 : l1, f = up ? h2 : l2;
+    const float vUp = up ? v[k - d] : v[k];
+    const float g = std::min(std::fabs(flow) / vUp, 1.0f);
+    const float t1 = e - b, t2 = (e - mid) - (mid - b);
+    const float t3 = (f - a) - 2 * t1, t4 = (f + a) - 4 * (e + b) + 6 * mid;
+    const float s = 1 - 2 * g, w = (2 - g) * (1 + g);
+    float mean = mid + 0.25f * (1 - g) * (t1 + s * (1.0f / 3) * t2 - w * (1.0f / 12) * (t3 + s * 0.2f * t4));
+    mean = std::min(std::max(mean, 0.0f), highest);
+    donor[k] = flow * mid;
+    extra[k] = flow * (mean - mid);
+  }
+}
+
+// Zalesak's limits: which part of the corrections may flow into a cell (`in`) and out of it (`out`).
+void limits(int n, const float* __restrict m, const float* __restrict v, const float* __restrict cLow,
+            const float* __restrict cHigh, const float* __restrict donorLow,
+            const float* __restrict donorHigh, const float* __restrict extraLow,
+            const float* __restrict extraHigh, float highest, float slack, float* __restrict in,
+            float* __restrict out) {
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    const float vNext = v[k] - (cHigh[k] - cLow[k]);
+    const float mDonor = m[k] - (donorHigh[k] - donorLow[k]);
+    const float enters = std::max(extraLow[k], 0.0f) - std::min(extraHigh[k], 0.0f);
+    const float leaves = std::max(extraHigh[k], 0.0f) - std::min(extraLow[k], 0.0f);
+    const float room = std::max(highest * vNext - mDonor - slack, 0.0f),
+                stock = std::max(mDonor - slack, 0.0f);
+    in[k] = std::min(1.0f, room / (enters + kTiny));
+    out[k] = std::min(1.0f, stock / (leaves + kTiny));
+  }
+}
+
+// The limits of a cell that stands for a cluster.
+void clusterLimits(float mass, float volume, float extraLow, float extraHigh, float highest, float slack,
+                   float& in, float& out) {
+  const float enters = std::max(extraLow, 0.0f) - std::min(extraHigh, 0.0f);
+  const float leaves = std::max(extraHigh, 0.0f) - std::min(extraLow, 0.0f);
+  in = std::min(1.0f, std::max(highest * volume - mass - slack, 0.0f) / (enters + kTiny));
+  out = std::min(1.0f, std::max(mass - slack, 0.0f) / (leaves + kTiny));
+}
+
+// The final flux, a whole number of quanta.
+template <class Step>
+void joinFluxes(int n, const float* __restrict c, const float* __restrict r, Step d,
+                const float* __restrict donor, const float* __restrict extra, const float* __restrict inLow,
+                const float* __restrict outLow, const float* __restrict inHigh,
+                const float* __restrict outHigh, Quantum q, float* __restrict flux) {
+  const float floorValue = kRoundingFloor * q.size;
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    const float up = std::min(inHigh[k], outLow[k]), down = std::min(inLow[k], outHigh[k]);
+    const float share = extra[k] > 0 ? up : down;
+    const float x = (donor[k] + extra[k] * share) * q.inverse;
+    const float upwind = c[k] > 0 ? r[k - d] : r[k];
+    const float half = upwind >= floorValue ? 0.5f : 0.0f;
+    flux[k] = static_cast<float>(static_cast<std::int32_t>(x + (x < 0 ? -half : half))) * q.size;
+  }
+}
+
+// Non-negative floats are ordered as their bits are, and integers reduce in vectors.
+struct Largest {
+  std::int32_t mass = 0, value = 0;
+};
+
+Largest update(int n, const float* __restrict m, const float* __restrict v, const float* __restrict cLow,
+               const float* __restrict cHigh, const float* __restrict fluxLow,
+               const float* __restrict fluxHigh, float* __restrict mOut, float* __restrict rOut) {
+  std::int32_t mass = 0, value = 0;
+#pragma omp simd reduction(max : mass, value)
+  for (int k = 0; k < n; ++k) {
+    const float next = m[k] - (fluxHigh[k] - fluxLow[k]);
+    const float ratio = next / (v[k] - (cHigh[k] - cLow[k]));
+    mOut[k] = next;
+    rOut[k] = ratio;
+    mass = std::max(mass, std::bit_cast<std::int32_t>(next));
+    value = std::max(value, std::bit_cast<std::int32_t>(ratio));
+  }
+  return {mass, value};
+}
+
+Largest updateWith(int n, const float* __restrict m, const float* __restrict divisor,
+                   const float* __restrict fluxLow, const float* __restrict fluxHigh, float* __restrict mOut,
+                   float* __restrict rOut) {
+  std::int32_t mass = 0, value = 0;
+#pragma omp simd reduction(max : mass, value)
+  for (int k = 0; k < n; ++k) {
+    const float next = m[k] - (fluxHigh[k] - fluxLow[k]), by = divisor[k];
+    const float quotient = next / (by > 0 ? by : 1.0f);
+    const float ratio = by > 0 ? quotient : 0.0f;
+    mOut[k] = next;
+    rOut[k] = ratio;
+    mass = std::max(mass, std::bit_cast<std::int32_t>(next));
+    value = std::max(value, std::bit_cast<std::int32_t>(ratio));
+  }
+  return {mass, value};
+}
+
+// Corrections at the listed faces of row j with first <= i < last; `donor` and `extra` point to face `first`.
+// `d` as above.
+void patchFaces(const SweepJob& job, int j, int first, int last, std::ptrdiff_t d, float* extra) {
+  const IrregularFace* face = job.irregular->begin(j);
+  const IrregularFace* const end = job.irregular->end(j);
+  face = std::lower_bound(face, end, first, [](const IrregularFace& f, int i) { return f.i < i; });
+  const float *c = job.courant->row(j), *r = job.value->row(j), *v = job.volume->row(j);
+  for (; face != end && face->i < last; ++face) {
+    const int i = face->i;
+    const float flow = c[i];
+    if (face->donor || flow == 0) {
+      extra[i - first] = 0;
+      continue;
+    }
+    const float l1 = r[i - d], h1 = r[i];
+    float mean, mid;
+    if (flow > 0) {
+      mid = l1;
+      mean = sweptMean3(face->behindLow ? r[i - 2 * d] : l1, l1, h1, std::min(flow / v[i - d], 1.0f));
+    } else {
+      mid = h1;
+      mean = sweptMean3(face->behindHigh ? r[i + d] : h1, h1, l1, std::min(-flow / v[i], 1.0f));
+    }
+    extra[i - first] = flow * (std::min(std::max(mean, 0.0f), job.highest) - mid);
+  }
+}
+
+void patchLimits(const SweepJob& job, int j, int first, int last, const float* extraLow,
+                 const float* extraHigh, float slack, float* in, float* out) {
+  const ClusterRoot* root = job.roots->begin(j);
+  const ClusterRoot* const end = job.roots->end(j);
+  root = std::lower_bound(root, end, first, [](const ClusterRoot& a, int i) { return a.i < i; });
+  for (; root != end && root->i < last; ++root) {
+    const int k = root->i - first;
+    clusterLimits(job.clusterMass[root->cluster], job.clusterVolume[root->cluster], extraLow[k], extraHigh[k],
+                  job.highest, slack, in[k], out[k]);
+  }
+}
+
+// A flow into the domain through its side brings clean air.
+inline void cleanInflow(float c, bool lowSide, float& donor, float& extra) {
+  if (lowSide ? c > 0 : c < 0) donor = extra = 0;
+}
+
+void clear(float* m, float* r, int n) {
+  std::memset(m, 0, n * sizeof(float));
+  std::memset(r, 0, n * sizeof(float));
+}
+
+struct alignas(64) Row {
+  float data[kStrip + 2 * kPad];
+  float* at0() { return data + kPad; }
+};
+
+}  // namespace
+
+Sweeper::Sweeper(int nx, int ny) {
+  const int strips = (nx + kStrip - 1) / kStrip, tiles = strips * ((ny + kTileRows - 1) / kTileRows);
+  low_.resize(std::max(ny, tiles));
+  high_.resize(low_.size());
+  top_.resize(low_.size());
+}
+
+std::size_t Sweeper::bytes() const { return low_.size() * (2 * sizeof(double) + sizeof(float)); }
+
+SweepResult Sweeper::run(const SweepJob& job, ThreadPool& pool) {
+  return job.axis == Axis::x ? runX(job, pool) : runY(job, pool);
+}
+
+SweepResult Sweeper::runX(const SweepJob& job, ThreadPool& pool) {
+  const int nx = job.nx, strips = job.active->strips();
+  const float slack = 2 * job.quantum.size;
+  auto oneRow = [&](int j) {
+    low_[j] = high_[j] = 0;
+    std::int32_t top = 0;
+    const float *c = job.courant->row(j), *r = job.value->row(j), *v = job.volume->row(j),
+                *m = job.mass->row(j);
+    float *mOut = job.massOut->row(j), *rOut = job.valueOut->row(j);
+    for (int s = 0; s < strips; ++s) {
+      const int first = s * kStrip, last = std::min(nx, first + kStrip), n = last - first;
+      const bool wrap = job.periodic && (s == 0 || s == strips - 1);
+      if (!job.active->at(s, j) && (s == 0 || !job.active->at(s - 1, j)) &&
+          (s == strips - 1 || !job.active->at(s + 1, j)) &&
+          !(wrap && (job.active->at(0, j) || job.active->at(strips - 1, j)))) {
+        clear(mOut + first, rOut + first, n);
+        job.activeOut->at(s, j) = 0;
+        continue;
+      }
+      Row donorRow, extraRow, inRow, outRow, fluxRow;
+      float *donor = donorRow.at0(), *extra = extraRow.at0(), *in = inRow.at0(), *out = outRow.at0(),
+            *flux = fluxRow.at0();
+      // Faces first - 1 .. last + 1, cells first - 1 .. last, final fluxes first .. last.
+      fluxes(n + 3, c + first - 1, r + first - 1, v + first - 1, 1, job.highest, donor - 1, extra - 1);
+      patchFaces(job, j, first - 1, last + 2, 1, extra - 1);
+      if (!job.periodic && s == 0) cleanInflow(c[0], true, donor[0], extra[0]);
+      if (!job.periodic && s == strips - 1) cleanInflow(c[nx], false, donor[n], extra[n]);
+      limits(n + 2, m + first - 1, v + first - 1, c + first - 1, c + first, donor - 1, donor, extra - 1,
+             extra, job.highest, slack, in - 1, out - 1);
+      patchLimits(job, j, first - 1, last + 1, extra - 1, extra, slack, in - 1, out - 1);
+      if (!job.periodic && s == 0) in[-1] = out[-1] = 1;
+      if (!job.periodic && s == strips - 1) in[n] = out[n] = 1;
+      joinFluxes(n + 1, c + first, r + first, 1, donor, extra, in - 1, out - 1, in, out, job.quantum, flux);
+      const Largest most = job.divisor ? updateWith(n, m + first, job.divisor->row(j) + first, flux, flux + 1,
+                                                    mOut + first, rOut + first)
+                                       : update(n, m + first, v + first, c + first, c + first + 1, flux,
+                                                flux + 1, mOut + first, rOut + first);
+      if (s == 0) low_[j] = flux[0];
+      if (s == strips - 1) high_[j] = flux[n];
+      job.activeOut->at(s, j) = most.mass > 0;
+      top = std::max(top, most.value);
+    }
+    top_[j] = std::bit_cast<float>(top);
+  };
+  pool.blocks(0, job.ny, kRowGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) oneRow(j);
+  });
+  SweepResult result;
+  for (int j = 0; j < job.ny; ++j) {
+    result.throughLow += low_[j];
+    result.throughHigh += high_[j];
+    result.highest = std::max(result.highest, top_[j]);
+  }
+  return result;
+}
+
+SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
+  const int nx = job.nx, ny = job.ny, strips = job.active->strips();
+  const std::ptrdiff_t d = job.courant->stride();
+  const float slack = 2 * job.quantum.size;
+  auto tile = [&](int index) {
+    const int s = index % strips, first = s * kStrip, last = std::min(nx, first + kStrip), n = last - first;
+    const int j0 = index / strips * kTileRows, j1 = std::min(ny, j0 + kTileRows);
+    low_[index] = high_[index] = 0;
+    top_[index] = 0;
+    bool any = false;
+    for (int j = j0 - 4; j < j1 + 4 && !any; ++j) any = job.active->at(s, j);
+    if (!any) {
+      for (int j = j0; j < j1; ++j) {
+        clear(job.massOut->row(j) + first, job.valueOut->row(j) + first, n);
+        job.activeOut->at(s, j) = 0;
+      }
+      return;
+    }
+    std::int32_t top = 0;
+    // Rings of rows: faces j, j + 1 and limits of cells j - 1, j are alive at once.
+    Row donorRing[2], extraRing[2], inRing[2], outRing[2], fluxRing[2];
+    auto ring = [](Row* rows, int j) { return rows[j & 1].at0(); };
+    auto face = [&](int j) {
+      float *donor = ring(donorRing, j), *extra = ring(extraRing, j);
+      const float* c = job.courant->row(j) + first;
+      fluxes(n, c, job.value->row(j) + first, job.volume->row(j) + first, d, job.highest, donor, extra);
+      patchFaces(job, j, first, last, d, extra);
+      if (!job.periodic && (j == 0 || j == ny))
+        for (int k = 0; k < n; ++k) cleanInflow(c[k], j == 0, donor[k], extra[k]);
+    };
+    face(j0 - 1);
+    for (int j = j0 - 1; j <= j1; ++j) {
+      const float *cLow = job.courant->row(j) + first, *cHigh = job.courant->row(j + 1) + first;
+      // The final flux of face j needs what face(j + 1) would overwrite only in the ring's other place.
+      face(j + 1);
+      float *in = ring(inRing, j), *out = ring(outRing, j);
+      if (!job.periodic && (j < 0 || j >= ny)) {
+        std::fill_n(in, n, 1.0f);
+        std::fill_n(out, n, 1.0f);
+      } else {
+        limits(n, job.mass->row(j) + first, job.volume->row(j) + first, cLow, cHigh, ring(donorRing, j),
+               ring(donorRing, j + 1), ring(extraRing, j), ring(extraRing, j + 1), job.highest, slack, in,
+               out);
+        patchLimits(job, j, first, last, ring(extraRing, j), ring(extraRing, j + 1), slack, in, out);
+      }
+      if (j < j0) continue;
+      float* flux = ring(fluxRing, j);
+      joinFluxes(n, cLow, job.value->row(j) + first, d, ring(donorRing, j), ring(extraRing, j),
+                 ring(inRing, j - 1), ring(outRing, j - 1), in, out, job.quantum, flux);
+      if (j == 0)
+        for (int k = 0; k < n; ++k) low_[index] += flux[k];
+      if (j == ny)
+        for (int k = 0; k < n; ++k) high_[index] += flux[k];
+      if (j == j0) continue;
+      const int i = j - 1;  // the row of cells between the last two faces
+      const float* m = job.mass->row(i) + first;
+      float *mOut = job.massOut->row(i) + first, *rOut = job.valueOut->row(i) + first;
+      const Largest most =
+          job.divisor ? updateWith(n, m, job.divisor->row(i) + first, ring(fluxRing, i), flux, mOut, rOut)
+                      : update(n, m, job.volume->row(i) + first, job.courant->row(i) + first, cLow,
+                               ring(fluxRing, i), flux, mOut, rOut);
+      job.activeOut->at(s, i) = most.mass > 0;
+      top = std::max(top, most.value);
+    }
+    top_[index] = std::bit_cast<float>(top);
+  };
+  const int tiles = strips * ((ny + kTileRows - 1) / kTileRows);
+  pool.blocks(0, tiles, 1, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) tile(k);
+  });
+  SweepResult result;
+  for (int k = 0; k < tiles; ++k) {
+    result.throughLow += low_[k];
+    result.throughHigh += high_[k];
+    result.highest = std::max(result.highest, top_[k]);
+  }
+  return result;
+}
+
+}  // namespace smokebox
