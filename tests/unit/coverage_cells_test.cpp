@@ -87,7 +87,7 @@ TEST(CoverageCells, OpenAreaIsTheDomainsLessThePolygons) {
   GridCover cover;
   int uncut = 0;
   for (int round = 0; round < 60; ++round) {
-    const Outline star = randomStar(random, {x(random), y(random)}, 0.28, 5 + round / 3);
+    const Outline star = randomStar(random, {x(random), y(random)}, 0.28, 5 + round / 6);
     coverGrid(grid, {{{star}}}, cover);
     const double missing = grid.width() * grid.height() - signedArea(star) - openArea(grid, cover);
     if (cover.shut.empty()) {
