@@ -89,6 +89,55 @@ void Multigrid::rebuild(const Boundary& boundary) {
   shape(boundary);
   builder_.finest(boundary, levels_.front());
   for (std::size_t l = 1; l < levels_.size(); ++l) builder_.coarsen(levels_[l - 1], levels_[l]);
+  listSealed();
+}
+
+// Every unknown of the balanced level that belongs to a region without an open side, region by region.
+void Multigrid::listSealed() {
+  constexpr long kFewCells = 1024;
+  balanced_ = 0;
+  while (static_cast<long>(levels_[balanced_].nx) * levels_[balanced_].ny > kFewCells) ++balanced_;
+
+  // At the coarsest level a region is one unknown, and it is sealed if that has no link.
+  labels_.resize(levels_.size());
+  const Level& top = levels_.back();
+  std::vector<int>& last = labels_.back();
+  last.assign(top.x.size(), -1);
+  int regions = 0;
+  if (top.id[top.at(0, 0)] == 0) last[top.at(0, 0)] = regions++;
+  for (std::size_t s = 0; s < top.specialAt.size(); ++s)
+    last[top.specialAt[s]] = top.specialInverse[s] > 0 ? -1 : regions++;
+  for (std::size_t l = levels_.size() - 1; l-- > balanced_;) {
+    const Level& level = levels_[l];
+    labels_[l].assign(level.x.size(), -1);
+    const auto inherit = [&](int at) {
+      labels_[l][at] = labels_[l + 1][parentOf(level, levels_[l + 1], at)];
+    };
+    for (int j = 0; j < level.ny; ++j)
+      for (int i = 0; i < level.nx; ++i)
+        if (level.id[level.at(i, j)] != 0) inherit(static_cast<int>(level.at(i, j)));
+    for (std::size_t s = 0; s < level.specialAt.size(); ++s)
+      if (level.specialAt[s] >= level.extrasBegin && level.specialInverse[s] > 0) inherit(level.specialAt[s]);
+  }
+  const std::vector<int>& label = labels_[balanced_];
+  sealedBegin_.assign(regions + 1, 0);
+  for (int r : label)
+    if (r >= 0) ++sealedBegin_[r + 1];
+  for (int r = 0; r < regions; ++r) sealedBegin_[r + 1] += sealedBegin_[r];
+  sealedAt_.resize(sealedBegin_[regions]);
+  for (int at = static_cast<int>(label.size()) - 1; at >= 0; --at)
+    if (label[at] >= 0) sealedAt_[--sealedBegin_[label[at] + 1]] = at;
+  sealedBegin_.push_back(static_cast<int>(sealedAt_.size()));
+  sealedBegin_.erase(sealedBegin_.begin());
+}
+
+void Multigrid::balance(multigrid::Floats& values) const {
+  for (std::size_t r = 0; r + 1 < sealedBegin_.size(); ++r) {
+    double sum = 0;
+    for (int k = sealedBegin_[r]; k < sealedBegin_[r + 1]; ++k) sum += values[sealedAt_[k]];
+    const float mean = static_cast<float>(sum / std::max(1, sealedBegin_[r + 1] - sealedBegin_[r]));
+    for (int k = sealedBegin_[r]; k < sealedBegin_[r + 1]; ++k) values[sealedAt_[k]] -= mean;
+  }
 }
 
 bool Multigrid::fused(const Level& level) const {
@@ -154,15 +203,23 @@ void Multigrid::ascend(std::size_t l) {
 }
 
 double Multigrid::cycle() {
-  for (std::size_t l = 0; l < levels_.size(); ++l) descend(l);
-  for (std::size_t l = levels_.size() - 1; l-- > 0;) ascend(l);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    if (l == balanced_) balance(levels_[l].b);
+    descend(l);
+  }
+  for (std::size_t l = levels_.size() - 1; l-- > 0;) {
+    ascend(l);
+    if (l == balanced_ && l > 0) balance(levels_[l].x);
+  }
   double sum = 0;
   for (double s : rowSums_) sum += s;
   return sum;
 }
 
 std::size_t Multigrid::bytes() const {
-  std::size_t sum = builder_.bytes() + (zeroRow_.size() + 2 * rowSums_.size()) * sizeof(float);
+  std::size_t sum = builder_.bytes() + (sealedAt_.capacity() + sealedBegin_.capacity()) * sizeof(int) +
+                    (zeroRow_.size() + 2 * rowSums_.size()) * sizeof(float);
+  for (const auto& list : labels_) sum += list.capacity() * sizeof(int);
   for (const Level& level : levels_) sum += level.bytes();
   return sum;
 }

@@ -37,6 +37,8 @@ class Multigrid {
 
  private:
   void shape(const Boundary& boundary);
+  void listSealed();
+  void balance(multigrid::Floats& values) const;
   void descend(std::size_t l);
   void ascend(std::size_t l);
   bool fused(const multigrid::Level& level) const;
@@ -46,6 +48,10 @@ class Multigrid {
   ThreadPool& pool_;
   multigrid::Builder builder_;
   std::vector<multigrid::Level> levels_;
+  std::size_t balanced_ = 0;      // the level on which sealed regions are balanced
+  std::vector<int> sealedBegin_;  // its unknowns, region by region
+  std::vector<int> sealedAt_;
+  std::vector<std::vector<int>> labels_;  // scratch of listSealed, by level
   std::vector<float> zeroRow_;
   std::vector<double> rowSums_;
 };

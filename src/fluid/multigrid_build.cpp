@@ -42,19 +42,19 @@ int parentOf(const Level& fine, const Level& coarse, int i, int j) {
   return parentOf(fine, coarse, i, j, j * fine.nx + i);
 }
 
-int parentOf(const Level& fine, const Level& coarse, int at) {
-  const Cell c = cellOf(fine, at);
-  const int unknown = at >= fine.extrasBegin ? static_cast<int>(fine.nx * fine.ny + (at - fine.extrasBegin))
-                                             : c.j * fine.nx + c.i;
-  return parentOf(fine, coarse, c.i, c.j, unknown);
-}
-
 void clear(Level& level) {
   std::fill(level.x.begin(), level.x.end(), 0.0f);
   std::fill(level.b.begin(), level.b.end(), 0.0f);
 }
 
 }  // namespace
+
+int parentOf(const Level& fine, const Level& coarse, int at) {
+  const Cell c = cellOf(fine, at);
+  const int unknown = at >= fine.extrasBegin ? static_cast<int>(fine.nx * fine.ny + (at - fine.extrasBegin))
+                                             : c.j * fine.nx + c.i;
+  return parentOf(fine, coarse, c.i, c.j, unknown);
+}
 
 void Builder::finest(const Boundary& boundary, Level& level) {
   clear(level);

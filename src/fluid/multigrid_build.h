@@ -13,6 +13,9 @@
 
 namespace smokebox::multigrid {
 
+/// Offset into the coarse x of the unknown that the fine unknown at offset `at` belongs to.
+int parentOf(const Level& fine, const Level& coarse, int at);
+
 class Builder {
  public:
   /// Links of the finest level. `level` has its shape already.

@@ -12,7 +12,7 @@
 namespace smokebox::multigrid {
 
 typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
-typedef int LaneMask __attribute__((vector_size(64)));
+typedef int LaneMask __attribute__((vector_size(64), aligned(4), may_alias));
 
 #define SMOKEBOX_INLINE inline __attribute__((always_inline))
 
@@ -26,16 +26,21 @@ SMOKEBOX_INLINE double sumOfLanes(const Lanes& v) {
 }
 
 SMOKEBOX_INLINE Lanes magnitude(const Lanes& v) {
-  const LaneMask bits = reinterpret_cast<LaneMask>(v) & 0x7fffffff;
-  return reinterpret_cast<Lanes>(bits);
+  const LaneMask bits = reinterpret_cast<const LaneMask&>(v) & 0x7fffffff;
+  return reinterpret_cast<const Lanes&>(bits);
 }
 
-/// The larger one of each lane; a NaN in `v` is passed on.
-SMOKEBOX_INLINE Lanes larger(const Lanes& v, const Lanes& so_far) { return v <= so_far ? so_far : v; }
+/// The larger one of each lane, of magnitudes. Compared by their bits: a NaN is larger than any number, and
+/// stays.
+SMOKEBOX_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
+  const LaneMask x = reinterpret_cast<const LaneMask&>(a), y = reinterpret_cast<const LaneMask&>(b);
+  const LaneMask z = x > y ? x : y;
+  return reinterpret_cast<const Lanes&>(z);
+}
 
 SMOKEBOX_INLINE float largestLane(const Lanes& v) {
   float m = v[0];
-  for (int k = 1; k < kLanes; ++k) m = v[k] <= m ? m : v[k];
+  for (int k = 1; k < kLanes; ++k) m = (v[k] > m || v[k] != v[k]) ? v[k] : m;
   return m;
 }
 

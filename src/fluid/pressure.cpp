@@ -30,7 +30,7 @@ constexpr double kSafety = 0.7;
 // In float32 the running residual parts from the true one: it is computed anew after a fall by this factor.
 constexpr double kTrusted = 1e-4;
 
-double largerOf(double a, double b) { return a <= b ? b : a; }
+double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 /// Sum of values[begin, end) (times weights), in float64 and always in the same order.
 double sumOf(const float* values, const float* weights, int begin, int end) {
@@ -88,7 +88,7 @@ PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& bounda
   Level& level = multigrid.finest();
   const PressureFlux::Largest largest = flux.measure(boundary, level, u, v, level.b);
   Source result{largest.flux, largest.speed, 0};
-  if (!regions.anySealed() || std::isnan(largest.flux)) return result;
+  if (!regions.anySealed() || !std::isfinite(largest.flux)) return result;
 
   const auto& all = regions.regions();
   sums.assign(all.size(), 0);

@@ -19,8 +19,8 @@ using multigrid::store;
 
 namespace {
 
-/// The larger one; a NaN in `a` is passed on.
-double largerOf(double a, double b) { return a <= b ? b : a; }
+/// The larger one; a NaN stays.
+double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 double sideFlux(float open, float velocity, float wall) {
   return static_cast<double>(open) * static_cast<double>(velocity) +
