@@ -1,7 +1,7 @@
-// Elementary functions whose results are the same to the bit on every x86-64 machine. The C library picks variants by
-// processor (with fused multiply-add or without), so they must not touch the simulation's state; +, -, *, / and sqrt
-// are exact by IEEE 754 and may. Errors are below 2 units in the last place for every argument; angles of any size are
-// reduced without drift.
+// Elementary functions whose results are the same to the bit on every x86-64 machine. The C library picks
+// variants by processor (with fused multiply-add or without), so they must not touch the simulation's state;
+// +, -, *, / and sqrt are exact by IEEE 754 and may. Errors are below 2 units in the last place for every
+// argument; angles of any size are reduced without drift.
 #pragma once
 
 namespace smokebox {

@@ -13,13 +13,16 @@ namespace smokebox {
 
 class SceneDocument {
  public:
-  /// Reads and parses a file. Throws IoError (cannot be read) or SceneError (not YAML, too deep, too large, ...).
+  /// Reads and parses a file. Throws IoError (cannot be read) or SceneError (not YAML, too deep, too large,
+  /// ...).
   static SceneDocument load(const std::filesystem::path& file);
   /// The same from text; `name` stands for the file in messages.
   static SceneDocument parse(std::string_view text, const std::string& name);
 
-  /// Lays `path=value` over the tree: `fluid.vorticity=0`, `solids.fan.drag=1`, `smoke.sources.0.rate=2`. The value is
-  /// YAML. Throws SceneError if the path does not lead anywhere that the scene may have. Checked when spec() is built.
+  /// Lays `path=value` over the tree: `fluid.vorticity=0`, `solids.fan.drag=1`, `smoke.sources.0.rate=2`. The
+  /// value is YAML; maps that are missing on the way are made. Throws SceneError if a step leads nowhere (no
+  /// such name or position in a list, or past a single value); unknown keys and wrong values are found, at
+  /// `place`, when spec() is built.
   void set(const std::string& path, const std::string& value, const SourcePlace& place);
 
   /// Reads and checks everything. Throws SceneError with every error found.

@@ -1,8 +1,9 @@
 // Where a scripted solid is at a time: fixed, constant velocity and spin, keyframes, or expressions of t.
 //
-// Between two keyframes a solid moves in a straight line; `smooth` eases the time, s -> s^2 (3 - 2 s), so that the
-// velocity is continuous and zero at every key. It stands still before the first key and after the last; `repeat`
-// starts over from the first key instead (the jump back is the scene's own if the two poses differ).
+// Between two keyframes a solid moves in a straight line; `smooth` eases the time, s -> s^2 (3 - 2 s), so
+// that the velocity is continuous and zero at every key. It stands still before the first key and after the
+// last; `repeat` starts over from the first key instead (the jump back is the scene's own if the two poses
+// differ).
 #pragma once
 #include <array>
 #include <optional>
@@ -21,9 +22,17 @@ struct Keyframe {
 
 class Motion {
  public:
-  struct Steady { Vec2 velocity; double spinRad = 0; };                             // m/s, rad/s
-  struct Keyframes { std::vector<Keyframe> frames; bool smooth = false, repeat = false; };
-  struct Formula { std::optional<Expression> x, y, angleDegrees; };                 // of t; what is left out is held
+  struct Steady {
+    Vec2 velocity;
+    double spinRad = 0;
+  };  // m/s, rad/s
+  struct Keyframes {
+    std::vector<Keyframe> frames;
+    bool smooth = false, repeat = false;
+  };
+  struct Formula {
+    std::optional<Expression> x, y, angleDegrees;
+  };  // of t; what is left out is held
 
   Motion() = default;  // stands still
   explicit Motion(Steady steady) : how_(steady) {}

@@ -70,9 +70,9 @@ void needFluid(EventReader& event, const YamlNode& node, const char* what) {
 void readBurst(EventReader& event, const YamlNode& node) {
   MapReader map(event.reader(), node, event.name("burst"));
   BurstAction burst;
-  const auto shape = readPlacedShape(map);
   map.number("smoke", burst.smoke, kNotNegative);
   map.color("color", burst.color);
+  const auto shape = readPlacedShape(map);
   map.finish();
   needFluid(event, node, "burst");
   if (!shape) return;
@@ -83,9 +83,9 @@ void readBurst(EventReader& event, const YamlNode& node) {
 void readForce(EventReader& event, const YamlNode& node) {
   MapReader map(event.reader(), node, event.name("force"));
   ForceAction force;
-  const auto shape = readPlacedShape(map);
   if (map.required("acceleration", "[x, y], m/s^2")) map.vector("acceleration", force.acceleration);
   map.number("for", force.duration, kNotNegative);
+  const auto shape = readPlacedShape(map);
   map.finish();
   needFluid(event, node, "force");
   if (!shape) return;

@@ -35,6 +35,7 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   scene.finish();
   if (reader.errors() == 0) {
     checkInflow(scene, spec);
+    checkFormulas(scene, spec);
     checkPlacement(scene, spec);
   }
   if (events) checkSetActions(root, name, spec, reader);
@@ -85,6 +86,34 @@ void checkSetActions(const YamlPtr& root, const std::string& name, SceneSpec& sp
                    "setting `" + set->path + "`: the scene has no fluid, and none can be added during a run",
                    "add `fluid: {}`");
     for (const SourceSpec& source : changed.smoke.sources) spec.laterSmokeColors.push_back(source.color);
+  }
+}
+
+void checkFormulas(MapReader& scene, const SceneSpec& spec) {
+  constexpr int kSamples = 9;
+  const Grid& grid = spec.domain.grid;
+  const auto& velocity = spec.fluid.velocity;
+  for (int k = 0; k < kSamples * kSamples && !(velocity[0].isConstant() && velocity[1].isConstant()); ++k) {
+    const Vec2 at{(k % kSamples + 0.5) / kSamples * grid.width(),
+                  (k / kSamples + 0.5) / kSamples * grid.height()};
+    if (std::isfinite(velocity[0](at.x, at.y, 0)) && std::isfinite(velocity[1](at.x, at.y, 0))) continue;
+    scene.reader().error(scene.find("fluid")->entry("velocity")->value->mark,
+                         "`fluid.velocity` is not a finite number at x = " + std::to_string(at.x) +
+                             ", y = " + std::to_string(at.y));
+    break;
+  }
+  for (std::size_t k = 0; k < spec.solids.size(); ++k) {
+    const SolidSpec& solid = spec.solids[k];
+    for (int m = 0; m < kSamples && !solid.motion.isStill(); ++m) {
+      const double t = m * spec.time.duration / (kSamples - 1);
+      const Pose pose = solid.motion.poseAt(t, solid.shape.pose);
+      if (std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.angleRad))
+        continue;
+      scene.reader().error(
+          scene.find("solids")->items[k]->entry("motion")->value->mark,
+          "the motion of `" + solid.name + "` is not a finite number at t = " + std::to_string(t));
+      break;
+    }
   }
 }
 

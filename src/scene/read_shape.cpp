@@ -137,7 +137,8 @@ std::optional<PlacedShape> readPlacedShape(MapReader& map) {
   map.vector("position", own.position);
   if (map.number("angle", angle)) own.angleRad = radians(angle);
   if (found.empty() && map.isMap()) {
-    reader.error(map.mark(), "`" + map.name() + "` names no shape", "one of " + all);
+    // A key that is not known is reported by finish(), with the shape that it may mean.
+    if (!map.hasMore()) reader.error(map.mark(), "`" + map.name() + "` names no shape", "one of " + all);
     return {};
   }
   if (!shape || reader.errors() > before) return {};

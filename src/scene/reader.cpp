@@ -60,7 +60,7 @@ std::optional<double> Reader::number(const YamlNode& node, const std::string& na
     try {
       value = Expression::parse(node.text, "")(0, 0, 0);
     } catch (const std::invalid_argument& fault) {
-      error(node.mark, "`" + name + "` must be a number: " + fault.what());
+      error(node.mark, "`" + name + "` must be a number" + got(node), fault.what());
       return {};
     }
     if (!std::isfinite(*value)) {
@@ -253,6 +253,12 @@ const YamlNode* MapReader::required(const std::string& key, const std::string& h
 }
 
 void MapReader::unsupported(const std::string& key) { unsupported_.push_back(key); }
+
+bool MapReader::hasMore() const {
+  return std::any_of(node_.entries.begin(), node_.entries.end(), [&](const YamlEntry& entry) {
+    return std::find(asked_.begin(), asked_.end(), entry.key) == asked_.end();
+  });
+}
 
 void MapReader::finish() {
   for (const YamlEntry& entry : node_.entries) {

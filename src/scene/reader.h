@@ -87,6 +87,8 @@ class MapReader {
   const YamlNode* required(const std::string& key, const std::string& hint = {});
   /// Names a key that this version does not know yet, so that the message says just that.
   void unsupported(const std::string& key);
+  /// Is there a key that nobody has asked for yet?
+  bool hasMore() const;
   /// Reports every key that was not asked for.
   void finish();
 

@@ -29,6 +29,8 @@ void checkSetActions(const YamlPtr& root, const std::string& name, SceneSpec& sp
 
 /// Reports a fluid that is let in without a way out.
 void checkInflow(MapReader& scene, const SceneSpec& spec);
+/// Reports starting velocities and motions that are no finite numbers, at places and times that are tried.
+void checkFormulas(MapReader& scene, const SceneSpec& spec);
 /// Warns of things that lie outside of the domain.
 void checkPlacement(MapReader& scene, const SceneSpec& spec);
 

@@ -1,5 +1,5 @@
-// A scene as plain data: what the file says, checked, with defaults filled in. Section 3 of the design is the contract.
-// SI units, y up; angles in radians here (degrees in files).
+// A scene as plain data: what the file says, checked, with defaults filled in. Section 3 of the design is the
+// contract. SI units, y up; angles in radians here (degrees in files).
 #pragma once
 #include <array>
 #include <limits>
@@ -24,7 +24,8 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 
 struct WallSpec {
   WallKind kind = WallKind::slip;
-  /// inflow: velocity of the fluid as functions of x, y, t; no-slip: velocity of the wall (constant expressions).
+  /// inflow: velocity of the fluid as functions of x, y, t; no-slip: velocity of the wall (constant
+  /// expressions).
   std::array<Expression, 2> velocity;
 };
 
@@ -42,56 +43,77 @@ struct TimeSpec {
 };
 
 struct FluidSpec {
-  double density = 1.2;     // kg/m^3 (per metre of depth)
-  double viscosity = 0;     // kinematic, m^2/s
-  double vorticity = 0;     // strength of the confinement, dimensionless
+  double density = 1.2;                // kg/m^3 (per metre of depth)
+  double viscosity = 0;                // kinematic, m^2/s
+  double vorticity = 0;                // strength of the confinement, dimensionless
   std::array<Expression, 2> velocity;  // at the start, of x and y
 };
 
 struct SourceSpec {
   PlacedShape shape;
-  double rate = 1;                   // smoke value per second inside the shape
-  std::optional<Vec2> velocity;      // the fluid inside is driven at this velocity, m/s
+  double rate = 1;               // smoke value per second inside the shape
+  std::optional<Vec2> velocity;  // the fluid inside is driven at this velocity, m/s
   Color color;
-  double from = 0, until = kForever; // s
+  double from = 0, until = kForever;  // s
 };
 
 struct SmokeSpec {
-  double buoyancy = 0;      // upward (against gravity; +y without gravity) acceleration per unit of smoke, m/s^2
+  double buoyancy = 0;  // upward (against gravity; +y without gravity) acceleration per unit of smoke, m/s^2
   std::vector<SourceSpec> sources;
 };
 
 struct SolidSpec {
   std::string name;
-  PlacedShape shape;        // pose at rest: what `position` and `angle` say (zero for world coordinates)
-  Motion motion;            // absolute pose of the shape's (0, 0) as a function of time
-  double drag = 0;          // 0 full slip .. 1 no slip; the default follows the viscosity
+  PlacedShape shape;  // pose at rest: what `position` and `angle` say (zero for world coordinates)
+  Motion motion;      // absolute pose of the shape's (0, 0) as a function of time
+  double drag = 0;    // 0 full slip .. 1 no slip; the default follows the viscosity
   double bounce = 0, friction = 0.5;
   std::optional<Color> color;
-  bool report = false;      // force and torque in the figures
+  bool report = false;  // force and torque in the figures
 };
 
 struct ProbeSpec {
   std::string name;
-  std::optional<Vec2> at;                // a point ...
-  std::optional<PlacedShape> region;     // ... or a region, in world coordinates at the start
-  std::string follow;                    // the solid that it moves rigidly with; empty: stands still
+  std::optional<Vec2> at;             // a point ...
+  std::optional<PlacedShape> region;  // ... or a region, in world coordinates at the start
+  std::string follow;                 // the solid that it moves rigidly with; empty: stands still
 };
 
-// --- events ---------------------------------------------------------------------------------------------------------
-struct SetAction { std::string path, value; SourcePlace place; };   // YAML text of the value
-struct BurstAction { PlacedShape shape; double smoke = 1; Color color; };
-struct ForceAction { PlacedShape shape; Vec2 acceleration; double duration = 0; };   // 0: one step
-struct VisibilityAction { std::string solid; bool visible = true; };                // pictures only
-struct StopAction { std::string solid; };                                           // stays where it is from then on
-struct CaptionAction { std::string text; double duration = kForever; };
+// --- events
+// ---------------------------------------------------------------------------------------------------------
+struct SetAction {
+  std::string path, value;
+  SourcePlace place;
+};  // YAML text of the value
+struct BurstAction {
+  PlacedShape shape;
+  double smoke = 1;
+  Color color;
+};
+struct ForceAction {
+  PlacedShape shape;
+  Vec2 acceleration;
+  double duration = 0;
+};  // 0: one step
+struct VisibilityAction {
+  std::string solid;
+  bool visible = true;
+};  // pictures only
+struct StopAction {
+  std::string solid;
+};  // stays where it is from then on
+struct CaptionAction {
+  std::string text;
+  double duration = kForever;
+};
 
 struct EventSpec {
-  double first = 0, every = 0, until = kForever;   // every = 0: once
+  double first = 0, every = 0, until = kForever;  // every = 0: once
   std::variant<SetAction, BurstAction, ForceAction, VisibilityAction, StopAction, CaptionAction> action;
 };
 
-// --- pictures -------------------------------------------------------------------------------------------------------
+// --- pictures
+// -------------------------------------------------------------------------------------------------------
 enum class LayerKind { smoke, solids, pressure, vorticity, speed, velocity, caption, time, probes };
 
 struct LayerSpec {
@@ -100,16 +122,19 @@ struct LayerSpec {
   std::optional<std::array<double, 2>> range;  // of a field; without it one range for the whole film is found
   bool bar = true;                             // colour bar of a field
   double spacing = 0;                          // velocity arrows: metres between them; 0: chosen
-  double scale = 0;                            // velocity arrows: seconds of motion that an arrow shows; 0: chosen
-  std::optional<Color> color;                  // arrows, time stamp, caption
+  double scale = 0;            // velocity arrows: seconds of motion that an arrow shows; 0: chosen
+  std::optional<Color> color;  // arrows, time stamp, caption
 };
 
-struct CaptionSpec { double from = 0, until = kForever; std::string text; };
+struct CaptionSpec {
+  double from = 0, until = kForever;
+  std::string text;
+};
 
 struct CameraSpec {
-  std::optional<Vec2> center;   // default: the domain's middle
-  std::optional<double> height; // metres seen vertically; default: all of the domain fits
-  std::string follow;           // a solid's name: the centre is relative to its position (default (0, 0))
+  std::optional<Vec2> center;    // default: the domain's middle
+  std::optional<double> height;  // metres seen vertically; default: all of the domain fits
+  std::string follow;            // a solid's name: the centre is relative to its position (default (0, 0))
 };
 
 struct ViewSpec {
@@ -125,17 +150,18 @@ struct OutputSpec {
 };
 
 struct MethodSpec {
-  double tolerance = 1e-5;  // divergence at which the pressure solve stops (0 < tolerance < 1); see the design
+  double tolerance =
+      1e-5;  // divergence at which the pressure solve stops (0 < tolerance < 1); see the design
   int maxIterations = 200;
 };
 
 struct SceneSpec {
-  std::string name;         // of the file, without folder and ending
-  std::string title;        // may be empty
+  std::string name;   // of the file, without folder and ending
+  std::string title;  // may be empty
   DomainSpec domain;
   TimeSpec time;
   Vec2 gravity;
-  bool hasFluid = false;    // fluid, smoke or an inflow is named: without one of them no fluid is built
+  bool hasFluid = false;  // fluid, smoke or an inflow is named: without one of them no fluid is built
   FluidSpec fluid;
   SmokeSpec smoke;
   std::vector<SolidSpec> solids;

@@ -37,7 +37,10 @@ class Builder : public YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    finish(newNode(mark, YamlNode::Kind::null), anchor);
+    auto node = newNode(mark, YamlNode::Kind::null);
+    // Nothing stands there: the parser's place is that of whatever comes next.
+    if (!stack_.empty() && stack_.back().key) node->mark = stack_.back().key->mark;
+    finish(std::move(node), anchor);
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {

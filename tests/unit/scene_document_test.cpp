@@ -116,5 +116,167 @@ TEST(SceneDocument, TheExampleOfTheDesignReadsWithoutAProblem) {
   EXPECT_EQ(spec.method.tolerance, 1e-5);
 }
 
+const std::string kDomain = "domain: {size: [2, 1], resolution: 64}\n";
+SceneSpec specOf(const std::string& rest) { return SceneDocument::parse(kDomain + rest, "s.yaml").spec(); }
+
+TEST(SceneDocument, DefaultsAreThoseOfTheDesign) {
+  // Truth: a scene with nothing but a domain.
+  const SceneSpec spec = specOf("");
+  EXPECT_EQ(spec.domain.grid, (Grid{64, 32, 1.0 / 32}));
+  for (const WallSpec& wall : spec.domain.walls) EXPECT_EQ(wall.kind, WallKind::slip);
+  EXPECT_EQ(spec.time.step, 1.0 / 120);
+  EXPECT_EQ(spec.time.steps, 1200);
+  EXPECT_EQ(spec.gravity, (Vec2{0, 0}));
+  EXPECT_FALSE(spec.hasFluid);
+  EXPECT_EQ(spec.output.width, 1280);
+  EXPECT_EQ(spec.output.height, 720);
+  EXPECT_EQ(spec.output.fps, 30);
+  EXPECT_EQ(spec.method.maxIterations, 200);
+  ASSERT_EQ(spec.view.layers.size(), 3u);
+  EXPECT_EQ(spec.view.layers[0].kind, LayerKind::smoke);
+  EXPECT_EQ(spec.view.layers[1].kind, LayerKind::solids);
+  EXPECT_EQ(spec.view.layers[2].kind, LayerKind::caption);
+}
+
+TEST(SceneDocument, AFluidIsBuiltOnlyWhereItIsNamed) {
+  // Truth: fluid, smoke or an inflow, even empty ones; nothing else.
+  EXPECT_TRUE(specOf("fluid: {}").hasFluid);
+  EXPECT_TRUE(specOf("fluid:").hasFluid);
+  EXPECT_TRUE(specOf("smoke: {}").hasFluid);
+  EXPECT_TRUE(specOf("walls: {left: {inflow: [1, 0]}, right: open}").hasFluid);
+  EXPECT_FALSE(specOf("walls: {left: open}\ngravity: [0, -1]").hasFluid);
+}
+
+TEST(SceneDocument, NumbersMayBeArithmeticAnywhere) {
+  // Truth: worked out by hand; a leading zero is no octal.
+  EXPECT_EQ(specOf("gravity: [0, -9.81/2]").gravity.y, -4.905);
+  EXPECT_EQ(specOf("gravity: [010, 2^3]").gravity, (Vec2{10, 8}));
+  EXPECT_EQ(specOf("gravity: [\"2*3\", +1e0]").gravity, (Vec2{6, 1}));
+  EXPECT_EQ(specOf("output: {fps: 6*10}").output.fps, 60);
+}
+
+TEST(SceneDocument, TheDefaultStepFitsTheFrames) {
+  // Truth: near 1/120 s, and a whole number of steps a frame for any rate.
+  for (int fps : {1, 24, 25, 30, 50, 60, 100, 144, 240}) {
+    const SceneSpec spec = specOf("output: {fps: " + std::to_string(fps) + "}");
+    EXPECT_DOUBLE_EQ(spec.time.step * spec.time.stepsPerFrame * fps, 1) << fps;
+    EXPECT_LE(spec.time.step, 1.0 / 70) << fps;
+  }
+  // A rounded decimal is as good as the fraction that it stands for.
+  EXPECT_EQ(specOf("time: {step: 0.00833333, duration: 12}").time.steps, 1440);
+}
+
+TEST(SceneDocument, DragFollowsTheViscosity) {
+  // Truth: default 1 with viscosity, 0 without; what is written counts.
+  const std::string solid = "solids: [{shape: {circle: {radius: 0.1}}, position: [1, 0.5]}]\n";
+  EXPECT_EQ(specOf(solid + "fluid: {viscosity: 1e-3}").solids[0].drag, 1);
+  EXPECT_EQ(specOf(solid + "fluid: {}").solids[0].drag, 0);
+  EXPECT_EQ(specOf(solid).solids[0].name, "solid 1");
+}
+
+TEST(SceneDocument, ShapesAreReadWithTheirPlaces) {
+  // Truth: every kind of shape, with position, angle and centre beside or inside.
+  auto region = [](const std::string& shape) {
+    return *specOf("probes: [{region: " + shape + "}]").probes.at(0).region;
+  };
+  EXPECT_EQ(std::get<BoxShape>(region("{box: {size: [1, 2]}, position: [1, 0.5], angle: 90}").shape).size,
+            (Vec2{1, 2}));
+  EXPECT_EQ(region("{box: {size: [1, 2]}, position: [1, 0.5], angle: 90}").pose,
+            (Pose{{1, 0.5}, radians(90)}));
+  EXPECT_EQ(std::get<EllipseShape>(region("{ellipse: {radii: [0.2, 0.1], center: [1, 0.5]}}").shape).radii,
+            (Vec2{0.2, 0.1}));
+  EXPECT_EQ(region("{circle: {radius: 0.1, center: [0.5, 0.25]}, position: [0.5, 0.25]}").pose.position,
+            (Vec2{1, 0.5}));
+  const auto capsule = std::get<CapsuleShape>(region("{capsule: {length: 0.4, radius: 0.03}}").shape);
+  EXPECT_EQ(capsule.length, 0.4);
+  EXPECT_EQ(capsule.radius, 0.03);
+  EXPECT_EQ(std::get<RegularShape>(region("{regular: {sides: 5, radius: 0.3}}").shape).sides, 5);
+  const auto joined = std::get<UnionShape>(
+      region("{union: [{box: {size: [1, 1]}}, {circle: {radius: 1}, position: [1, 0]}]}").shape);
+  ASSERT_EQ(joined.parts.size(), 2u);
+  EXPECT_EQ(joined.parts[1].pose.position, (Vec2{1, 0}));
+}
+
+TEST(SceneDocument, ACentreInASolidIsItsPlaceUnlessItHasOne) {
+  // Truth: without a position the centre is where it rests and turns; with one the centre is an offset from
+  // it.
+  const SolidSpec plain = specOf("solids: [{shape: {circle: {center: [1, 0.5], radius: 0.1}}}]").solids[0];
+  EXPECT_EQ(plain.shape.pose.position, (Vec2{1, 0.5}));
+  EXPECT_TRUE(std::holds_alternative<CircleShape>(plain.shape.shape));
+  const SolidSpec offset =
+      specOf("solids: [{shape: {circle: {center: [0.2, 0], radius: 0.1}}, position: [1, 0.5]}]").solids[0];
+  EXPECT_EQ(offset.shape.pose.position, (Vec2{1, 0.5}));
+  EXPECT_EQ(std::get<UnionShape>(offset.shape.shape).parts.at(0).pose.position, (Vec2{0.2, 0}));
+}
+
+TEST(SceneDocument, KeyframesHoldWhatTheyLeaveOut) {
+  // Truth: position and angle of the key before, at first those of rest.
+  const SolidSpec solid =
+      specOf(
+          "solids: [{shape: {circle: {radius: 0.1}}, position: [1, 0.5], angle: 30, motion: {keyframes: "
+          "[{at: 0, angle: 60}, {at: 1, position: [1.5, 0.5]}, {at: 2, angle: 90}], repeat: true}}]")
+          .solids[0];
+  const Pose rest = solid.shape.pose;
+  EXPECT_EQ(solid.motion.poseAt(0, rest), (Pose{{1, 0.5}, radians(60)}));
+  EXPECT_EQ(solid.motion.poseAt(1, rest), (Pose{{1.5, 0.5}, radians(60)}));
+  EXPECT_EQ(solid.motion.poseAt(1.999999999, rest).position, (Vec2{1.5, 0.5}));
+  EXPECT_EQ(solid.motion.poseAt(3, rest), solid.motion.poseAt(1, rest));
+}
+
+TEST(SceneDocument, AliasesShareWhatTheyName) {
+  // Truth: an alias means the value at its anchor.
+  const SceneSpec spec = specOf(
+      "solids:\n- {name: a, shape: &s {circle: {radius: 0.1}}, position: [0.5, 0.5]}\n"
+      "- {name: b, shape: *s, position: [1.5, 0.5]}\n");
+  EXPECT_EQ(std::get<CircleShape>(spec.solids[1].shape.shape).radius, 0.1);
+}
+
+TEST(SceneDocument, LayersTakeTheirOptions) {
+  // Truth: each option in its field; layers of things that this scene cannot have draw nothing.
+  const SceneSpec spec = specOf(
+      "view: {background: light, camera: {center: [1, 0.5], height: 0.5}, layers: [time, joints, trails, "
+      "{vorticity: {opacity: 0.5, range: [-2, 2], bar: false}}, {velocity: {spacing: 0.1, scale: 0.2, color: "
+      "red}}]}");
+  ASSERT_EQ(spec.view.layers.size(), 3u);
+  EXPECT_EQ(spec.view.layers[0].kind, LayerKind::time);
+  EXPECT_EQ(spec.view.layers[1].range, (std::array<double, 2>{-2, 2}));
+  EXPECT_FALSE(spec.view.layers[1].bar);
+  EXPECT_EQ(spec.view.layers[2].spacing, 0.1);
+  EXPECT_EQ(spec.view.layers[2].color, (Color{1, 0, 0}));
+  EXPECT_GT(spec.view.background.r, 0.9f);
+  EXPECT_EQ(spec.view.camera.height, 0.5);
+}
+
+TEST(SceneDocument, EventsBecomeSingleActions) {
+  // Truth: one entry for every solid named and every path set.
+  const SceneSpec spec = specOf(
+      "solids: [{name: a, shape: {circle: {radius: .1}}, position: [1, .5]}, {name: b, shape: {circle: "
+      "{radius: .1}}, "
+      "position: [.5, .5]}]\nfluid: {}\nevents:\n- {at: 1, hide: [a, b]}\n- {at: 2, show: a}\n- {at: 3, "
+      "stop: b}\n"
+      "- {at: 4, set: {fluid.vorticity: 1, gravity: [0, 1]}}\n- {every: 2, caption: {text: x, for: 1}}\n"
+      "- {at: 5, force: {box: {size: [1, 1]}, position: [1, .5], acceleration: [5, 0]}}\n");
+  ASSERT_EQ(spec.events.size(), 8u);
+  EXPECT_EQ(std::get<VisibilityAction>(spec.events[1].action).solid, "b");
+  EXPECT_FALSE(std::get<VisibilityAction>(spec.events[1].action).visible);
+  EXPECT_TRUE(std::get<VisibilityAction>(spec.events[2].action).visible);
+  EXPECT_EQ(std::get<StopAction>(spec.events[3].action).solid, "b");
+  EXPECT_EQ(std::get<SetAction>(spec.events[5].action).value, "[0, 1]");
+  EXPECT_EQ(spec.events[6].every, 2);
+  EXPECT_EQ(spec.events[6].first, 0);
+  EXPECT_EQ(std::get<CaptionAction>(spec.events[6].action).duration, 1);
+  EXPECT_EQ(std::get<ForceAction>(spec.events[7].action).duration, 0);
+  EXPECT_EQ(std::get<ForceAction>(spec.events[7].action).shape.pose.position, (Vec2{1, 0.5}));
+}
+
+TEST(SceneDocument, ColoursAreReadAsWritten) {
+  // Truth: hexadecimal digits and a name of CSS.
+  EXPECT_EQ(parseColor("#fff"), (Color{1, 1, 1}));
+  EXPECT_EQ(parseColor("#88ccff"), (Color{0x88 / 255.f, 0xcc / 255.f, 1}));
+  EXPECT_EQ(parseColor("orange"), (Color{1, 165 / 255.f, 0}));
+  for (const char* wrong : {"", "#", "#ff", "#ffff", "#gggggg", "orangee", "#12345678"})
+    EXPECT_FALSE(parseColor(wrong).has_value()) << wrong;
+}
+
 }  // namespace
 }  // namespace smokebox
