@@ -61,7 +61,9 @@ struct Advection::Impl {
     run(u1, v1, u2, v2, 1.0 / 2);
     projectRoughly(u2, v2);
     extension.apply(boundary, u2, v2);
-    run(u2, v2, u, v, 1);
+    run(u2, v2, u1, v1, 1);
+    u.swap(u1);
+    v.swap(v1);
   }
 
   /// u -= share grad phi - dt acceleration, on open faces.

@@ -4,7 +4,8 @@
 // sub-steps (up to four); beyond that a Catmull-Rom semi-Lagrangian step with lagged pressure, stable at any
 // size.
 //
-// What comes in through an open side has the velocity that is there already (no gradient across the side).
+// What comes in through an open side was at rest far away: its normal speed loses the head u^2/2 on the way
+// in, its tangential speed is that of the face it meets.
 #pragma once
 #include <functional>
 #include <memory>

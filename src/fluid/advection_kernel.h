@@ -16,7 +16,7 @@ namespace smokebox {
 struct AdvectionStage {
   const Field *u = nullptr, *v = nullptr;          // what is carried and carries; extended
   const Field *baseU = nullptr, *baseV = nullptr;  // velocity at the start of the step
-  Field *outU = nullptr, *outV = nullptr;          // may be the base
+  Field *outU = nullptr, *outV = nullptr;          // neither the base nor what is carried
   const Field* phi = nullptr;
   const Field *accelerationU = nullptr, *accelerationV = nullptr;  // may be null
   float rateScale = 0, phiScale = 0, accelerationScale = 0;        // dt/h, share of phi, dt of the stage

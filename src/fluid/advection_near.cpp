@@ -12,6 +12,9 @@ constexpr std::uint8_t kExtended = 1;  // extended from the fluid: the outer poi
 constexpr std::uint8_t kKnown = 2;     // cut by a surface, or in the plane of a wall
 constexpr std::uint8_t kRegular = 3;   // fully open, or the image of such a face by symmetry or period
 
+// Small cut cells are given at least this share of a cell's area, so that they do not limit the time step.
+constexpr float kSmallestVolume = 0.5f;
+
 constexpr int kReach = 4;      // of the high-order stencil along the direction of a flux
 constexpr int kMapMargin = 8;  // columns of the margin that are filled
 
@@ -128,15 +131,32 @@ void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
       if (!irregular[i] || !(o[i] > 0)) continue;
       Face face;
       face.i = i;
+      // The faces whose flow enters the four transport velocities.
+      std::uint8_t around = std::min({c.use(i, j), alongX ? c.use(i - 1, j) : c.use(i, j - 1),
+                                      alongX ? c.use(i + 1, j) : c.use(i, j + 1)});
+      for (int b = 0; b < 2; ++b)
+        for (int a = 0; a < 2; ++a)
+          around = std::min(around, alongX ? other(i - 1 + a, j + b) : other(i + a, j - 1 + b));
+      face.cut = around != kRegular;
+      if (face.cut) {
+        auto share = [&](int a, int b) {
+          if (wrapX) a = a < 0 ? a + nx : a >= nx ? a - nx : a;
+          if (wrapY) b = b < 0 ? b + ny : b >= ny ? b - ny : b;
+          return a < 0 || a >= nx || b < 0 || b >= ny ? 1.0f : boundary.volume(a, b);
+        };
+        const float volume = 0.5f * (share(i, j) + (alongX ? share(i - 1, j) : share(i, j - 1)));
+        face.perVolume = 1 / std::clamp(volume, kSmallestVolume, 1.0f);
+      }
       if (o[i] < 0.5f) {
         face.order = {first, first, first, first};
       } else {
-        const bool left = !alongX && i == 0 && wet(Side::left),
-                   right = !alongX && i == nx - 1 && wet(Side::right);
-        const bool below = alongX && j == 0 && wet(Side::bottom),
-                   above = alongX && j == ny - 1 && wet(Side::top);
-        face.order = {orderBetween(c.use, i - 1, j, 1, 0, left), orderBetween(c.use, i, j, 1, 0, right),
-                      orderBetween(c.use, i, j - 1, 0, 1, below), orderBetween(c.use, i, j, 0, 1, above)};
+        auto between = [&](int a, int b, int di, int dj, bool atSide, Side side) {
+          if (atSide && boundary.open(side)) return (di != 0) == alongX ? ambient : none;
+          return orderBetween(c.use, a, b, di, dj, atSide && wet(side));
+        };
+        face.order = {
+            between(i - 1, j, 1, 0, i == 0, Side::left), between(i, j, 1, 0, i == columns - 1, Side::right),
+            between(i, j - 1, 0, 1, j == 0, Side::bottom), between(i, j, 0, 1, j == rows - 1, Side::top)};
       }
       c.faces.push_back(face);
     }
@@ -165,8 +185,10 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
       value = fifthOrder(p[-2 * step], p[-step], p[0], p[step], p[2 * step], p[3 * step], U);
     } else if (order == third) {
       value = thirdOrder(p[-step], p[0], p[step], p[2 * step], U);
-    } else if (own == 1 ? U > 0 : U < 0) {  // the flow comes from the other side
-      value = order == inward ? thirdOrder(p[-step], p[0], p[step], p[2 * step], U) : p[(1 - own) * step];
+    } else if (order != none && (own == 1 ? U > 0 : U < 0)) {  // the flow comes from the other side
+      if (order == inward) value = thirdOrder(p[-step], p[0], p[step], p[2 * step], U);
+      if (order == first) value = p[(1 - own) * step];
+      if (order == ambient) value = 0.5f * q;
     }
     return U * (value - q);
   };
@@ -175,19 +197,50 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
     return base + (impulse - s.rateScale * rate);
   };
 
+  // The whole flux through a face, that of the fluid and that of what closes it: its divergence is 0 in cut
+  // cells too.
+  auto fluxU = [&](int i, int j) {
+    const float q = (*s.u)(i, j);
+    if (s.periodicX) i = i < 0 ? i + nx : i >= nx ? i - nx : i;
+    if (s.periodicY) j = j < 0 ? j + ny : j >= ny ? j - ny : j;
+    if (i < 0 || i > nx || j < 0 || j >= ny) return q;
+    const float open = boundary.openX(i, j);
+    return open * q + (1 - open) * boundary.wallU(i, j);
+  };
+  auto fluxV = [&](int i, int j) {
+    const float q = (*s.v)(i, j);
+    if (s.periodicX) i = i < 0 ? i + nx : i >= nx ? i - nx : i;
+    if (s.periodicY) j = j < 0 ? j + ny : j >= ny ? j - ny : j;
+    if (i < 0 || i >= nx || j < 0 || j > ny) return q;
+    const float open = boundary.openY(i, j);
+    return open * q + (1 - open) * boundary.wallV(i, j);
+  };
+  struct Flow {  // through the four flux points
+    float left, right, below, above;
+  };
+  auto rateOf = [&](const Face& f, const float* q, Flow t) {
+    const float x = term(f.order[1], q, 1, 0, t.right) - term(f.order[0], q - 1, 1, 1, t.left);
+    const float y =
+        term(f.order[3], q, stride, 0, t.above) - term(f.order[2], q - stride, stride, 1, t.below);
+    return x + y;
+  };
+
   for (int j = begin; j < std::min(end, ny); ++j)
     for (int k = u_.rowBegin[j]; k < u_.rowBegin[j + 1]; ++k) {
       const Face& f = u_.faces[k];
       const int i = f.i;
       const float *q = s.u->row(j) + i, *v = s.v->row(j) + i;
-      const float left = 0.5f * (q[-1] + q[0]), right = 0.5f * (q[0] + q[1]);
-      const float below = 0.5f * (v[-1] + v[0]), above = 0.5f * (v[stride - 1] + v[stride]);
-      const float x = term(f.order[1], q, 1, 0, right) - term(f.order[0], q - 1, 1, 1, left);
-      const float y = term(f.order[3], q, stride, 0, above) - term(f.order[2], q - stride, stride, 1, below);
+      Flow t{0.5f * (q[-1] + q[0]), 0.5f * (q[0] + q[1]), 0.5f * (v[-1] + v[0]),
+             0.5f * (v[stride - 1] + v[stride])};
+      if (f.cut) {
+        const float own = fluxU(i, j), half = 0.5f * f.perVolume;
+        t = {half * (fluxU(i - 1, j) + own), half * (own + fluxU(i + 1, j)),
+             half * (fluxV(i - 1, j) + fluxV(i, j)), half * (fluxV(i - 1, j + 1) + fluxV(i, j + 1))};
+      }
       const float* phi = s.phi->row(j);
       const float ahead = i < nx ? phi[i] : 0.0f;
       const float behind = i > 0 ? phi[i - 1] : s.periodicX ? phi[nx - 1] : 0.0f;
-      (*s.outU)(i, j) = advanced((*s.baseU)(i, j), x + y, ahead - behind,
+      (*s.outU)(i, j) = advanced((*s.baseU)(i, j), rateOf(f, q, t), ahead - behind,
                                  s.accelerationU ? s.accelerationU->row(j) + i : nullptr);
     }
   for (int j = begin; j < end; ++j)
@@ -195,13 +248,16 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
       const Face& f = v_.faces[k];
       const int i = f.i;
       const float *q = s.v->row(j) + i, *u = s.u->row(j) + i;
-      const float below = 0.5f * (q[-stride] + q[0]), above = 0.5f * (q[0] + q[stride]);
-      const float left = 0.5f * (u[-stride] + u[0]), right = 0.5f * (u[1 - stride] + u[1]);
-      const float x = term(f.order[1], q, 1, 0, right) - term(f.order[0], q - 1, 1, 1, left);
-      const float y = term(f.order[3], q, stride, 0, above) - term(f.order[2], q - stride, stride, 1, below);
+      Flow t{0.5f * (u[-stride] + u[0]), 0.5f * (u[1 - stride] + u[1]), 0.5f * (q[-stride] + q[0]),
+             0.5f * (q[0] + q[stride])};
+      if (f.cut) {
+        const float own = fluxV(i, j), half = 0.5f * f.perVolume;
+        t = {half * (fluxU(i, j - 1) + fluxU(i, j)), half * (fluxU(i + 1, j - 1) + fluxU(i + 1, j)),
+             half * (fluxV(i, j - 1) + own), half * (own + fluxV(i, j + 1))};
+      }
       const float ahead = j < ny ? (*s.phi)(i, j) : 0.0f;
       const float behind = j > 0 ? (*s.phi)(i, j - 1) : s.periodicY ? (*s.phi)(i, ny - 1) : 0.0f;
-      (*s.outV)(i, j) = advanced((*s.baseV)(i, j), x + y, ahead - behind,
+      (*s.outV)(i, j) = advanced((*s.baseV)(i, j), rateOf(f, q, t), ahead - behind,
                                  s.accelerationV ? s.accelerationV->row(j) + i : nullptr);
     }
 }

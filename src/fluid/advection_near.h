@@ -10,6 +10,10 @@
 //   comes in,
 //           the face's own value if it goes out
 //   first   upwind
+//   ambient a normal component at an open side: what comes in was at rest far away, so half of its speed is
+//   lost (the
+//           head u^2/2 of Bernoulli); without that, vortices that leave feed energy back and grow
+//   none    a tangential component at an open side: no gradient across it
 #pragma once
 #include <array>
 #include <cstdint>
@@ -34,9 +38,11 @@ class NearFaces {
   std::size_t bytes() const;
 
  private:
-  enum Order : std::uint8_t { first, third, fifth, inward };
+  enum Order : std::uint8_t { first, third, fifth, inward, ambient, none };
   struct Face {
     int i = 0;
+    float perVolume = 1;           // one over the open share of the area that the face stands for
+    bool cut = false;              // the flow around it is partly that of a surface
     std::array<Order, 4> order{};  // at the flux points before and after it along x, then along y
   };
   struct Component {
