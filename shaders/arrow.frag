@@ -20,7 +20,7 @@ float head(vec2 p, float tip, float l, float b) {
 }
 
 void main() {
-  float length_ = min(6.5 * halfWidth, reach);          // of the head
+  float length_ = min(6.5 * halfWidth, 0.55 * reach);          // of the head
   float breadth = length_ * 0.45;
   float distance;
   if (reach < 2.0 * halfWidth)

@@ -28,14 +28,14 @@ void ColorBarLayer::draw(const Snapshot& snapshot, const std::vector<const Layer
   int right = frame.width - margin;
   for (auto field = fields.rbegin(); field != fields.rend(); ++field) {
     const FieldStyle style = fieldStyle(snapshot, **field, frame);
-    const Ticks ticks = ticksFor(style.range[0], style.range[1], std::max(2, panelHeight / (3 * size)));
+    const Ticks ticks = ticksFor(style.range[0], style.range[1], std::max(2, panelHeight * 5 / (12 * size)));
     int widest = 0;
     for (const double value : ticks.values)
       widest = std::max(widest, palette_.text.advance(ticks.label(value), size));
     const int title = palette_.text.advance(style.label, size);
     const int inner = std::max(title, strip + tickLength + size / 3 + widest);
     const int left = right - inner - 2 * pad;
-    palette_.panels.add(left, top, right, bottom, linear(plate, 0.62), linear(ink, 0.12), 0.5 * size, thin);
+    palette_.panels.add(left, top, right, bottom, linear(plate, 0.8), linear(ink, 0.12), 0.5 * size, thin);
 
     const int barTop = top + 2 * pad + size, barBottom = bottom - pad;
     const int barLeft = left + pad, barRight = barLeft + strip;

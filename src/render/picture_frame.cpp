@@ -31,7 +31,8 @@ PictureFrame frameOf(const Snapshot& snapshot, int width, int height) {
   frame.top = upperLeft.y;
   frame.right = lowerRight.x;
   frame.bottom = lowerRight.y;
-  frame.unit = height / 720.0;
+  // A tall picture has no room for the letters that its height would allow.
+  frame.unit = std::min(height / 720.0, width / 880.0);
   frame.darkGround = isDark(snapshot.view.background);
   return frame;
 }

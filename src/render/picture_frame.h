@@ -14,7 +14,7 @@ struct PictureFrame {
   Vec2 centre;                 // the world's point in the middle of the picture, m
   double left = 0, right = 0;  // of the domain, pixels
   double top = 0, bottom = 0;
-  double unit = 1;  // 1 at a height of 720: line widths and fonts are in these
+  double unit = 1;  // 1 at a height of 720 (unless too narrow): line widths and fonts are in these
   bool darkGround = true;
 
   Vec2 toPixels(Vec2 world) const {

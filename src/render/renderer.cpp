@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.h"
@@ -35,6 +36,7 @@ struct Renderer::Impl {
         text(palette),
         probes(palette) {}
 
+  void drawDomain(const Snapshot& snapshot, const PictureFrame& frame);
   void drawInDomain(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
   void drawAround(const Snapshot& snapshot, const PictureFrame& frame);
   void drawOnTop(const Snapshot& snapshot, const PictureFrame& frame);
@@ -69,7 +71,7 @@ void Renderer::draw(const Snapshot& snapshot, Image& image) {
   const LinearColor ground = linear(snapshot.view.background);
   gl.ClearColor(ground[0], ground[1], ground[2], 1);
   gl.Clear(GL_COLOR_BUFFER_BIT);
-  for (const LayerSpec& layer : snapshot.view.layers) r.drawInDomain(snapshot, layer, frame);
+  r.drawDomain(snapshot, frame);
   r.drawAround(snapshot, frame);
   r.drawOnTop(snapshot, frame);
 
@@ -79,6 +81,25 @@ void Renderer::draw(const Snapshot& snapshot, Image& image) {
   r.target.read(image.rgba.data());
   const GLenum error = gl.GetError();
   if (error != GL_NO_ERROR) throw GlError("drawing failed, OpenGL's error " + std::to_string(error));
+}
+
+/// In the order of the list, but that nothing which fills the fluid is painted over a solid: inside of one
+/// there is none, and its values there are only continued for the sake of smooth edges.
+void Renderer::Impl::drawDomain(const Snapshot& snapshot, const PictureFrame& frame) {
+  const std::vector<LayerSpec>& layers = snapshot.view.layers;
+  const auto fillsFluid = [](const LayerSpec& l) { return l.kind == LayerKind::smoke || isField(l.kind); };
+  const auto lastFluid = std::find_if(layers.rbegin(), layers.rend(), fillsFluid).base();  // one past it
+  std::vector<const LayerSpec*> late;
+  for (auto layer = layers.begin(); layer != layers.end(); ++layer) {
+    if (layer == lastFluid)
+      for (const LayerSpec* waiting : late) drawInDomain(snapshot, *waiting, frame);
+    if (layer->kind == LayerKind::solids && layer < lastFluid)
+      late.push_back(&*layer);
+    else
+      drawInDomain(snapshot, *layer, frame);
+  }
+  if (lastFluid == layers.end())
+    for (const LayerSpec* waiting : late) drawInDomain(snapshot, *waiting, frame);
 }
 
 void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& layer,

@@ -6,7 +6,9 @@
 namespace smokebox {
 
 namespace {
-constexpr double kThickness = 1.8;   // smoke of value 1 hides 1 - exp(-1.8) = 83% of what is behind
+// Smoke of value 1 hides 1 - exp(-thickness) of what is behind: 83% and 95%. A light ground needs more for
+// the same strength of colour, for it shines through far brighter.
+constexpr double kThicknessOnDark = 1.8, kThicknessOnLight = 3.0;
 constexpr float kInvisible = 1e-5f;  // a density that changes no pixel
 constexpr float kFilled = 1e-3f;     // weight of a closed cell that was given a value
 constexpr int kTileCells = 8;
@@ -168,7 +170,7 @@ void SmokeLayer::drawTiles(const GlProgram& program, GlTexture& texture, const S
   program.use();
   program.set("pictureSize", float(frame.width), float(frame.height));
   program.set("lattice", 0);
-  program.set("thickness", float(kThickness / std::log(2.0)));
+  program.set("thickness", float((frame.darkGround ? kThicknessOnDark : kThicknessOnLight) / std::log(2.0)));
   program.set("opacity", float(layer.opacity));
   program.set("color", linear(snapshot.smoke.front().color));
   tiles_.draw(records_);

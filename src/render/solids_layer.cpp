@@ -5,8 +5,8 @@
 namespace smokebox {
 
 namespace {
-constexpr double kOutlineUnits = 2.0;    // width of the outline, in 1/720 of the picture's height
-constexpr double kThinnestPixels = 1.6;  // thinner solids are widened to this, or they would fade away
+constexpr double kOutlineUnits = 2.0;   // width of the outline, in 1/720 of the picture's height
+constexpr double kThinnestUnits = 2.2;  // thinner solids are widened to this, or they would fade away
 
 struct SolidColors {
   Color fill, outline;
@@ -35,7 +35,8 @@ void SolidsLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const P
     }
     Kept& kept = kept_[k];
     if (kept.outlines != pixels_) {
-      kept.mask = painter_.solid(pixels_, frame.line(kOutlineUnits), kThinnestPixels);
+      kept.mask =
+          painter_.solid(pixels_, frame.line(kOutlineUnits), std::max(1.6, kThinnestUnits * frame.unit));
       std::swap(kept.outlines, pixels_);
     }
     const SolidColors colors = colorsOf(solid, frame.darkGround);
