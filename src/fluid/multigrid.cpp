@@ -76,6 +76,18 @@ void Multigrid::shape(const Boundary& boundary) {
     };
     measure(m, nx, px, level.widthX, level.distanceX);
     measure(n, ny, py, level.widthY, level.distanceY);
+    const auto nominal = [&](const std::vector<double>& width, const std::vector<double>& distance,
+                             std::vector<float>& size, std::vector<float>& near) {
+      size.assign(width.size() + 2 * multigrid::kLanes, 0);
+      near.assign(width.size() + 2 * multigrid::kLanes, 0);
+      for (std::size_t k = 0; k < width.size(); ++k) size[k] = static_cast<float>(width[k] / unit);
+      for (std::size_t k = 0; k < distance.size(); ++k) near[k] = static_cast<float>(unit / distance[k]);
+    };
+    nominal(level.widthX, level.distanceX, level.wide, level.nearX);
+    nominal(level.widthY, level.distanceY, level.high, level.nearY);
+    level.slackX.assign(level.nearX.size(), 1e-4f);
+    for (int i = 0; i < static_cast<int>(level.slackX.size()); ++i)
+      if (i == 0 || i >= m) level.slackX[i] = 1e9f;
     if (m == 1 && n == 1) break;
     m = (m + 1) / 2;
     n = (n + 1) / 2;

@@ -8,7 +8,27 @@
 
 namespace smokebox::multigrid {
 
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace {
+
+constexpr float kSlack = 1e-4f, kAnything = 1e9f;
+
+inline bool allLanes(const LaneMask& m) {
+  typedef long long Longs __attribute__((vector_size(64), aligned(4), may_alias));
+  const Longs& l = reinterpret_cast<const Longs&>(m);
+  long long all = l[0];
+  for (int k = 1; k < 8; ++k) all &= l[k];
+  return all == -1;
+}
+
+inline unsigned bitsOf(const LaneMask& m) {
+  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  const LaneMask bits = m & place;
+  int sum = 0;
+  for (int k = 0; k < kLanes; ++k) sum |= bits[k];
+  return static_cast<unsigned>(sum);
+}
 
 Towards opposite(Towards t) { return static_cast<Towards>(static_cast<int>(t) ^ 1); }
 
@@ -107,7 +127,8 @@ void Builder::findParts(Level& fine, Level& coarse) {
         continue;
       }
       const int before = coarse.extras;
-      for (int I = C * kLanes; I < std::min((C + 1) * kLanes, coarse.nx); ++I) splitBlock(fine, coarse, I, J);
+      for (unsigned left = suspects(fine, coarse, C, J); left != 0; left &= left - 1)
+        splitBlock(fine, coarse, C * kLanes + std::countr_zero(left), J);
       splitChunk_[J * coarse.chunks + C] = coarse.extras > before;
     }
     for (int q = 0; q < 2 && 2 * J + q < fine.ny; ++q) {
@@ -120,6 +141,45 @@ void Builder::findParts(Level& fine, Level& coarse) {
   coarse.x.resize(coarse.extrasBegin + coarse.extras, 0);
   coarse.b.resize(coarse.extrasBegin + coarse.extras, 0);
   coarse.residualExtra.assign(coarse.extras, 0);
+}
+
+// The blocks of a chunk that cover more than one part, or extra unknowns. Bit k: block k of the chunk.
+unsigned Builder::suspects(const Level& fine, const Level& coarse, int C, int J) {
+  const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
+  const LaneMask odd = even + 1;
+  const bool pair = 2 * C + 1 < fine.chunks;
+  const int i = 2 * C * kLanes, j = 2 * J;
+  const Lanes zero = {};
+  const LaneMask none = {};
+  const auto of = [&](const Floats& f, int row, const LaneMask& which) {
+    const float* p = fine.row(f, row) + i;
+    return __builtin_shuffle(load(p), pair ? load(p + kLanes) : zero, which);
+  };
+  // Trees that the blocks' cells and the links inside them make: cells minus links, one more for a closed
+  // ring.
+  const bool upper = j + 1 < fine.ny;
+  LaneMask count = (of(fine.id, j, even) != 0.0f) + (of(fine.id, j, odd) != 0.0f);
+  const LaneMask lower = (of(fine.id, j, odd) != 0.0f) & (of(fine.ax, j, odd) > 0.0f);
+  LaneMask links = lower, ring = none;
+  if (upper) {
+    const LaneMask topRight = of(fine.id, j + 1, odd) != 0.0f;
+    count += (of(fine.id, j + 1, even) != 0.0f) + topRight;
+    const LaneMask top = topRight & (of(fine.ax, j + 1, odd) > 0.0f);
+    const LaneMask left = of(fine.ay, j + 1, even) > 0.0f,
+                   right = topRight & (of(fine.ay, j + 1, odd) > 0.0f);
+    links += top + left + right;
+    ring = lower & top & left & right;
+  }
+  unsigned bits = bitsOf((links - count) - ring > 1);  // a true lane is -1
+  if (fine.extras) {
+    const int columns = std::min(2 * kLanes, fine.nx - i);
+    for (int q = 0; q < (upper ? 2 : 1); ++q) {
+      const int* base = fine.extraBase.data() + (j + q) * fine.nx + i;
+      for (int k = 0; k < columns; ++k) bits |= static_cast<unsigned>(base[k] >= 0) << (k / 2);
+    }
+  }
+  const int blocks = std::min(kLanes, coarse.nx - C * kLanes);
+  return bits & (blocks == kLanes ? 0xffffu : (1u << blocks) - 1);
 }
 
 int Builder::findRoot(int member) {
@@ -271,17 +331,52 @@ void Builder::linkBelow(const Level& fine, Level& coarse, int I, int J) {
   *target = sum * factor;
 }
 
+void Builder::fillRegular(Level& coarse, int C, int J) {
+  const Lanes zero = {};
+  store(coarse.row(coarse.ax, J) + C * kLanes, zero + 1.0f);
+  store(coarse.row(coarse.ay, J) + C * kLanes, zero + 1.0f);
+}
+
+// The left and lower faces of a chunk where neither it nor its neighbours have extra unknowns.
+void Builder::linkWhole(const Level& fine, Level& coarse, int C, int J) {
+  const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
+  const LaneMask odd = even + 1;
+  const int I = C * kLanes, i = 2 * I, j = 2 * J;
+  const float* ax = fine.row(fine.ax, j) + i;
+  const float* ay = fine.row(fine.ay, j) + i;
+  // Rows end with room for one more chunk only: the second half of the last pair may lie beyond it.
+  const bool pair = 2 * C + 1 < fine.chunks;
+  const Lanes zero = {};
+  Lanes first = load(ax), second = pair ? load(ax + kLanes) : zero;
+  if (j + 1 < fine.ny) {
+    first += load(ax + fine.stride);
+    if (pair) second += load(ax + fine.stride + kLanes);
+  }
+  const Lanes below = load(ay), belowNext = pair ? load(ay + kLanes) : zero;
+  const Lanes left = __builtin_shuffle(first, second, even) * load(factorX_.data() + I);
+  const float factorY = static_cast<float>(fine.distanceY[j] / coarse.distanceY[J]);
+  const Lanes down =
+      (__builtin_shuffle(below, belowNext, even) + __builtin_shuffle(below, belowNext, odd)) * factorY;
+  store(coarse.row(coarse.ax, J) + I, left);
+  store(coarse.row(coarse.ay, J) + I, down);
+}
+
 // Links that cross a face of the coarse grid and are kept in the fine grid.
 void Builder::linkGrid(const Level& fine, Level& coarse) {
   raw_.clear();
+  factorX_.assign(static_cast<std::size_t>(coarse.chunks) * kLanes, 0);
+  for (int I = 0; I < coarse.nx; ++I)
+    factorX_[I] = static_cast<float>(fine.distanceX[2 * I] / coarse.distanceX[I]);
   for (int J = 0; J <= coarse.ny; ++J)
     for (int C = 0; C < coarse.chunks; ++C) {
       const int first = C * kLanes, last = std::min(first + kLanes, coarse.nx);
       if (J < coarse.ny && J > 0 && C > 0) {
         const int k = J * coarse.chunks + C;
-        if (regularChunk_[k] && !splitChunk_[k - 1] && !splitChunk_[k - coarse.chunks]) {
-          std::fill(coarse.row(coarse.ax, J) + first, coarse.row(coarse.ax, J) + last, 1.0f);
-          std::fill(coarse.row(coarse.ay, J) + first, coarse.row(coarse.ay, J) + last, 1.0f);
+        if (!splitChunk_[k] && !splitChunk_[k - 1] && !splitChunk_[k - coarse.chunks]) {
+          if (regularChunk_[k])
+            fillRegular(coarse, C, J);
+          else
+            linkWhole(fine, coarse, C, J);
           if (last == coarse.nx) linkLeft(fine, coarse, last, J);
           continue;
         }
@@ -436,43 +531,40 @@ void Builder::listSpecials(Level& level) {
 // Inverse diagonal, kind of each chunk, and the band along solids.
 void Builder::classify(Level& level) {
   disturbed_.assign(level.chunk.size(), 0);
-  const double unit = level.unit;
   for (int j = 0; j < level.ny; ++j) {
     const float* ax = level.row(level.ax, j);
     const float* ay = level.row(level.ay, j);
     const float* ayAbove = ay + level.stride;
     float* id = level.row(level.id, j);
+    const float high = level.high[j], nearBelow = level.nearY[j], nearAbove = level.nearY[j + 1];
+    const float slackBelow = j > 0 ? kSlack : kAnything, slackAbove = j + 1 < level.ny ? kSlack : kAnything;
     for (int c = 0; c < level.chunks; ++c) {
-      const int first = c * kLanes;
-      const int k = j * level.chunks + c;
-      int odd = first + kLanes > level.nx;
-      for (int i = first; i < first + kLanes; ++i)
-        odd |= (ax[i] != 1.0f) | (ax[i + 1] != 1.0f) | (ay[i] != 1.0f) | (ayAbove[i] != 1.0f);
-      if (!odd) {
+      const int i = c * kLanes, k = j * level.chunks + c;
+      const Lanes left = load(ax + i), right = load(ax + i + 1), below = load(ay + i),
+                  above = load(ayAbove + i);
+      const bool whole = i + kLanes <= level.nx;
+      if (whole && allLanes((left == 1.0f) & (right == 1.0f) & (below == 1.0f) & (above == 1.0f))) {
         level.chunk[k] = kRegular;
-        std::fill(id + first, id + first + kLanes, 0.25f);
+        std::fill(id + i, id + i + kLanes, 0.25f);
         continue;
       }
-      bool any = false;
-      unsigned disturbed = 0;
-      const float high = static_cast<float>(level.widthY[j] / unit);
-      for (int i = first; i < std::min(first + kLanes, level.nx); ++i) {
-        const float d = (ax[i] + ax[i + 1]) + (ay[i] + ayAbove[i]);
-        id[i] = d > 0 ? 1 / d : 0;
-        any |= d > 0;
-        // Compared with what the link would be without solids; sides of the domain do not count.
-        const float wide = static_cast<float>(level.widthX[i] / unit);
-        const auto off = [](float weight, double nominal) {
-          return !(std::fabs(weight - static_cast<float>(nominal)) < 1e-4f);
-        };
-        const bool beside = (i > 0 && off(ax[i], high * unit / level.distanceX[i])) ||
-                            (i + 1 < level.nx && off(ax[i + 1], high * unit / level.distanceX[i + 1])) ||
-                            (j > 0 && off(ay[i], wide * unit / level.distanceY[j])) ||
-                            (j + 1 < level.ny && off(ayAbove[i], wide * unit / level.distanceY[j + 1]));
-        disturbed |= static_cast<unsigned>(beside) << (i - first);
-      }
-      level.chunk[k] = any ? kGeneral : kEmpty;
-      disturbed_[k] = static_cast<std::uint16_t>(disturbed);
+      Lanes diagonal = (left + right) + (below + above);
+      if (!whole)
+        for (int q = level.nx - i; q < kLanes; ++q) diagonal[q] = 0;
+      const LaneMask used = diagonal > 0.0f;
+      const Lanes zero = {}, one = zero + 1.0f;
+      store(id + i, used ? one / (used ? diagonal : one) : zero);
+      // Compared with what the links would be without solids; sides of the domain do not count.
+      const Lanes wide = load(level.wide.data() + i);
+      const auto off = [](const Lanes& weight, const Lanes& nominal, const Lanes& slack) {
+        return magnitude(weight - nominal) > slack;
+      };
+      const LaneMask beside =
+          off(left, high * load(level.nearX.data() + i), load(level.slackX.data() + i)) |
+          off(right, high * load(level.nearX.data() + i + 1), load(level.slackX.data() + i + 1)) |
+          off(below, wide * nearBelow, zero + slackBelow) | off(above, wide * nearAbove, zero + slackAbove);
+      level.chunk[k] = bitsOf(used) ? kGeneral : kEmpty;
+      disturbed_[k] = static_cast<std::uint16_t>(bitsOf(beside));
     }
   }
   for (int s = 0; s < static_cast<int>(level.specialAt.size()); ++s) {
@@ -484,22 +576,36 @@ void Builder::classify(Level& level) {
     if (at < level.extrasBegin)
       level.id[at] = -level.specialInverse[s];  // in use, but not by the rows' loops
   }
+  level.runs.clear();
+  level.bandRuns.clear();
   for (int j = 0; j < level.ny; ++j) {
-    std::uint8_t any = 0;
+    level.runBegin[j] = static_cast<int>(level.runs.size());
+    level.bandBegin[j] = static_cast<int>(level.bandRuns.size());
     for (int c = 0; c < level.chunks; ++c) {
-      const int k = j * level.chunks + c;
+      const int k = j * level.chunks + c, i = c * kLanes;
+      if (level.chunk[k] & kEmpty) continue;
+      const bool regular = level.chunk[k] & kRegular;
+      if (level.runBegin[j] < static_cast<int>(level.runs.size()) && level.runs.back().end == i &&
+          level.runs.back().regular == regular)
+        level.runs.back().end = i + kLanes;
+      else
+        level.runs.push_back({i, i + kLanes, regular});
+
       unsigned near = disturbed_[k];
       if (j > 0) near |= disturbed_[k - level.chunks];
       if (j + 1 < level.ny) near |= disturbed_[k + level.chunks];
       if (c > 0) near |= disturbed_[k - 1] & 0xc000u;
       if (c + 1 < level.chunks) near |= disturbed_[k + 1] & 0x3u;
-      if (near && !(level.chunk[k] & kEmpty)) {
-        level.chunk[k] |= kBand;
-        any = 1;
-      }
+      if (!near) continue;
+      level.chunk[k] |= kBand;
+      if (level.bandBegin[j] < static_cast<int>(level.bandRuns.size()) && level.bandRuns.back().end == i)
+        level.bandRuns.back().end = i + kLanes;
+      else
+        level.bandRuns.push_back({i, i + kLanes, false});
     }
-    level.rowBand[j] = any;
   }
+  level.runBegin[level.ny] = static_cast<int>(level.runs.size());
+  level.bandBegin[level.ny] = static_cast<int>(level.bandRuns.size());
 }
 
 std::size_t Builder::bytes() const {

@@ -42,7 +42,10 @@ class Builder {
   };
 
   void findParts(Level& fine, Level& coarse);
+  static unsigned suspects(const Level& fine, const Level& coarse, int C, int J);
   void splitBlock(Level& fine, Level& coarse, int I, int J);
+  static void fillRegular(Level& coarse, int C, int J);
+  void linkWhole(const Level& fine, Level& coarse, int C, int J);
   void linkGrid(const Level& fine, Level& coarse);
   void linkLists(const Level& fine, Level& coarse);
   void linkLeft(const Level& fine, Level& coarse, int I, int J);
@@ -55,6 +58,7 @@ class Builder {
   std::vector<int> order_, sizes_, labels_;
   std::array<std::vector<Level::Prolong>, 2> prolong_;  // of the lower and the upper row
   std::vector<Raw> raw_;
+  std::vector<float> factorX_;
   std::vector<int> slot_;  // by offset into x; -1 between uses
   std::vector<int> specials_, counts_;
   std::vector<Level::Entry> entries_;

@@ -50,10 +50,24 @@ SMOKEBOX_INLINE LaneMask lanesOfColour(int j, int colour) {
   return ((j + colour) & 1) ? ~even : even;
 }
 
+/// The new values of both colours in 16 cells; `left` are the values to the left of them.
+SMOKEBOX_INLINE Lanes relaxedRegular(const float* x, const float* b, std::ptrdiff_t stride,
+                                     const Lanes& left) {
+  return (((left + load(x + 1)) + (load(x - stride) + load(x + stride))) + load(b)) * 0.25f;
+}
+SMOKEBOX_INLINE Lanes relaxedGeneral(const float* x, const float* b, const float* ax, const float* ay,
+                                     const float* id, std::ptrdiff_t stride, const Lanes& left) {
+  return (((load(ax) * left + load(ax + 1) * load(x + 1)) +
+           (load(ay) * load(x - stride) + load(ay + stride) * load(x + stride))) +
+          load(b)) *
+         load(id);
+}
+
 /// A Gauss-Seidel sweep over one colour of row j. bandOnly: only the chunks near solids.
 template <bool bandOnly>
 inline void sweepRow(Level& level, int j, int colour) {
-  if (bandOnly && !level.rowBand[j]) return;
+  const std::vector<int>& begin = bandOnly ? level.bandBegin : level.runBegin;
+  if (begin[j] == begin[j + 1]) return;
   const int first = level.specialBegin[2 * j + colour], last = level.specialBegin[2 * j + colour + 1];
   float* values = level.x.data();
   for (int s = first; s < last; ++s) {
@@ -64,35 +78,33 @@ inline void sweepRow(Level& level, int j, int colour) {
   }
 
   float* x = level.row(level.x, j);
-  const float* below = x - level.stride;
-  const float* above = x + level.stride;
   const float* b = level.row(level.b, j);
   const float* ax = level.row(level.ax, j);
   const float* ay = level.row(level.ay, j);
-  const float* ayAbove = ay + level.stride;
   const float* id = level.row(level.id, j);
-  const std::uint8_t* kind = level.chunkRow(j);
+  const std::ptrdiff_t stride = level.stride;
   const LaneMask mask = lanesOfColour(j, colour);
-  Lanes left = load(x - 1);
-  for (int c = 0, i = 0; c < level.chunks; ++c, i += kLanes) {
-    if ((bandOnly && !(kind[c] & kBand)) || (kind[c] & kEmpty)) {
-      left = load(x + i + kLanes - 1);
-      continue;
-    }
+  const Level::Run* run = (bandOnly ? level.bandRuns : level.runs).data() + begin[j];
+  const Level::Run* end = (bandOnly ? level.bandRuns : level.runs).data() + begin[j + 1];
+  for (; run != end; ++run) {
     // The left neighbours of the next chunk are loaded before this one is stored: the store would stall the
     // load.
-    const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
-    Lanes value;
-    if (kind[c] & kRegular) {
-      value = (((left + load(x + i + 1)) + (load(below + i) + load(above + i))) + load(b + i)) * 0.25f;
+    Lanes left = load(x + run->begin - 1);
+    if (!bandOnly && run->regular) {
+      for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
+        const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
+        const Lanes value = relaxedRegular(x + i, b + i, stride, left);
+        left = nextLeft;
+        store(x + i, mask ? value : old);
+      }
     } else {
-      value = (((load(ax + i) * left + load(ax + i + 1) * load(x + i + 1)) +
-                (load(ay + i) * load(below + i) + load(ayAbove + i) * load(above + i))) +
-               load(b + i)) *
-              load(id + i);
+      for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
+        const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
+        const Lanes value = relaxedGeneral(x + i, b + i, ax + i, ay + i, id + i, stride, left);
+        left = nextLeft;
+        store(x + i, mask ? value : old);
+      }
     }
-    left = nextLeft;
-    store(x + i, mask ? value : old);
   }
   for (int s = first; s < last; ++s) values[level.specialAt[s]] = level.specialValue[s];
   level.wrapRow(x);
@@ -103,13 +115,16 @@ inline void startRow(Level& level, int j) {
   float* x = level.row(level.x, j);
   const float* b = level.row(level.b, j);
   const float* id = level.row(level.id, j);
-  const std::uint8_t* kind = level.chunkRow(j);
   const LaneMask mask = lanesOfColour(j, 0);
   const Lanes zero = {};
-  for (int c = 0, i = 0; c < level.chunks; ++c, i += kLanes) {
-    if (kind[c] & kEmpty) continue;
-    const Lanes value = (kind[c] & kRegular) ? load(b + i) * 0.25f : load(b + i) * load(id + i);
-    store(x + i, mask ? value : zero);
+  for (int r = level.runBegin[j]; r < level.runBegin[j + 1]; ++r) {
+    const Level::Run& run = level.runs[r];
+    if (run.regular) {
+      for (int i = run.begin; i < run.end; i += kLanes) store(x + i, mask ? load(b + i) * 0.25f : zero);
+    } else {
+      for (int i = run.begin; i < run.end; i += kLanes)
+        store(x + i, mask ? load(b + i) * load(id + i) : zero);
+    }
   }
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)
     level.x[level.specialAt[s]] = level.b[level.specialAt[s]] * level.specialInverse[s];

@@ -37,7 +37,8 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
   ay.assign(extrasBegin, 0);
   id.assign(extrasBegin, 0);
   chunk.assign(static_cast<std::size_t>(ny) * chunks, 0);
-  rowBand.assign(ny, 0);
+  runBegin.assign(ny + 1, 0);
+  bandBegin.assign(ny + 1, 0);
   const std::size_t cells = static_cast<std::size_t>(nx) * ny;
   part.assign(cells, 0);
   specialBegin.assign(2 * ny + 1, 0);
@@ -49,8 +50,8 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
 }
 
 std::size_t Level::bytes() const {
-  return bytesOf(x) + bytesOf(b) + bytesOf(ax) + bytesOf(ay) + bytesOf(id) + bytesOf(chunk) +
-         bytesOf(rowBand) + bytesOf(extraBase) + bytesOf(extraCell) + bytesOf(specialBegin) +
+  return bytesOf(x) + bytesOf(b) + bytesOf(ax) + bytesOf(ay) + bytesOf(id) + bytesOf(chunk) + bytesOf(runs) +
+         bytesOf(bandRuns) + bytesOf(extraBase) + bytesOf(extraCell) + bytesOf(specialBegin) +
          bytesOf(specialAt) + bytesOf(specialCell) + bytesOf(specialInverse) + bytesOf(specialValue) +
          bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) + bytesOf(prolongBegin) + bytesOf(prolong) +
          bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) + bytesOf(residual) + bytesOf(residualExtra);

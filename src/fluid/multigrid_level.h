@@ -58,14 +58,22 @@ struct Level {
   std::ptrdiff_t extrasBegin = 0;         // offset of the first extra unknown
   int extras = 0;
   std::vector<double> widthX, widthY;  // of each column and row, in cells of the finest grid
-  std::vector<double> distanceX,
-      distanceY;  // between the centres on both sides of face 0..n, in the same unit
+  std::vector<double> distanceX, distanceY;  // between the centres beside face 0..n, in the same unit
+  // What the links are without solids: on an x-face, high[j] nearX[i]; on a y-face, wide[i] nearY[j]. Padded with 0.
+  std::vector<float> wide, high, nearX, nearY;
+  std::vector<float> slackX;  // how far an x-face may be off: anything at the sides
 
   // ---- unknowns and links
   Floats x, b;        // value and right-hand side: grid, then extra unknowns
   Floats ax, ay, id;  // links and inverse diagonal (0: no unknown there, or a special one): grid
-  std::vector<std::uint8_t> chunk;    // ny x chunks
-  std::vector<std::uint8_t> rowBand;  // ny: 1 if any chunk of the row is in the band
+  std::vector<std::uint8_t> chunk;  // ny x chunks
+  struct Run {
+    int begin, end;  // cells, multiples of 16
+    bool regular;
+  };
+  std::vector<int> runBegin, bandBegin;  // ny + 1
+  std::vector<Run> runs;                 // chunks of one kind side by side, without the empty ones
+  std::vector<Run> bandRuns;             // chunks of the band side by side
 
   std::vector<int>
       extraBase;  // per block (offset without margins): first extra unknown in it, -1 if it is whole

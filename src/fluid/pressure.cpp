@@ -32,21 +32,12 @@ constexpr double kTrusted = 1e-4;
 
 double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
-/// Sum of values[begin, end) (times weights), in float64 and always in the same order.
-double sumOf(const float* values, const float* weights, int begin, int end) {
-  double part[8] = {};
-  for (int i = begin; i < end; i += 8)
-    for (int k = 0; k < std::min(8, end - i); ++k)
-      part[k] += static_cast<double>(values[i + k]) * (weights ? static_cast<double>(weights[i + k]) : 1.0);
-  return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
-}
-
 }  // namespace
 
 struct PressureSolver::Impl {
   Impl(const Boundary& boundary, ThreadPool& threads)
       : pool(threads), multigrid(boundary, threads), flux(boundary, threads) {
-    solution = direction = image = multigrid.finest().x;
+    solution = direction = multigrid.finest().x;
     rows.resize(boundary.grid.ny);
     regions.rebuild(boundary, multigrid.finest());
   }
@@ -56,7 +47,7 @@ struct PressureSolver::Impl {
     regions.rebuild(boundary, multigrid.finest());
     const std::size_t size = static_cast<std::size_t>(multigrid.finest().extrasBegin);
     rows.resize(boundary.grid.ny);
-    for (Floats* f : {&solution, &direction, &image}) f->assign(size, 0);
+    for (Floats* f : {&solution, &direction}) f->assign(size, 0);
   }
 
   /// The net flux into b, spread over sealed regions where it does not cancel. m/s.
@@ -68,9 +59,10 @@ struct PressureSolver::Impl {
   /// Conjugate gradients for the right-hand side in b, until the largest residual is at most `target`; the
   /// solution is left in `solution`. Returns the number of iterations.
   int solve(double start, double target, int maxIterations);
-  /// direction = x + beta direction, image = A direction; returns their product.
+  /// direction = x + beta direction; returns its product with A direction.
   double advanceDirection(float beta);
-  /// solution += alpha direction, b -= alpha image; returns the largest |b|.
+  /// solution += alpha direction, b -= alpha A direction (computed again: cheaper than to keep it); returns
+  /// the largest |b|.
   double advanceSolution(float alpha);
   /// Takes the mean off the solution in sealed regions.
   void centreSolution();
@@ -79,7 +71,7 @@ struct PressureSolver::Impl {
   Multigrid multigrid;
   Regions regions;
   PressureFlux flux;
-  Floats solution, direction, image;  // on the finest level's grid
+  Floats solution, direction;  // on the finest level's grid
   std::vector<double> rows, sums;
 };
 
@@ -93,8 +85,7 @@ PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& bounda
   const auto& all = regions.regions();
   sums.assign(all.size(), 0);
   for (const Regions::Run& run : regions.runs())
-    if (all[run.region].sealed)
-      sums[run.region] += sumOf(level.row(level.b, run.j), nullptr, run.begin, run.end);
+    if (all[run.region].sealed) sums[run.region] += sumOfRow(level.row(level.b, run.j), run.begin, run.end);
   for (std::size_t r = 0; r < all.size(); ++r) {
     if (!all[r].sealed) continue;
     sums[r] /= all[r].volume;
@@ -143,7 +134,6 @@ double PressureSolver::Impl::advanceDirection(float beta) {
       if (kind[c] & kEmpty) continue;
       const std::ptrdiff_t offset = level.at(c * kLanes, j);
       const Lanes value = applyChunk(level, kind[c], direction.data(), offset);
-      store(image.data() + offset, value);
       sum += value * load(direction.data() + offset);
     }
     rows[j] = multigrid::sumOfLanes(sum);
@@ -165,14 +155,16 @@ double PressureSolver::Impl::advanceDirection(float beta) {
 
 double PressureSolver::Impl::advanceSolution(float alpha) {
   Level& level = multigrid.finest();
-  const int width = level.chunks * kLanes;
   forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
-    float *x = level.row(solution, j), *r = level.row(level.b, j);
-    const float *p = level.row(direction, j), *q = level.row(image, j);
+    float *x = solution.data(), *r = level.b.data();
+    const float* p = direction.data();
+    const std::uint8_t* kind = level.chunkRow(j);
     Lanes m = {};
-    for (int i = 0; i < width; i += kLanes) {
+    for (int c = 0; c < level.chunks; ++c) {
+      if (kind[c] & kEmpty) continue;
+      const std::ptrdiff_t i = level.at(c * kLanes, j);
       store(x + i, load(x + i) + alpha * load(p + i));
-      const Lanes value = load(r + i) - alpha * load(q + i);
+      const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
       store(r + i, value);
       m = multigrid::larger(multigrid::magnitude(value), m);
     }
@@ -190,7 +182,7 @@ void PressureSolver::Impl::centreSolution() {
     sums.assign(all.size(), 0);
     for (const Regions::Run& run : regions.runs())
       if (all[run.region].sealed)
-        sums[run.region] += sumOf(level.row(solution, run.j), nullptr, run.begin, run.end);
+        sums[run.region] += sumOfRow(level.row(solution, run.j), run.begin, run.end);
     for (std::size_t r = 0; r < all.size(); ++r) sums[r] /= static_cast<double>(all[r].cells);
     for (const Regions::Run& run : regions.runs()) {
       if (!all[run.region].sealed) continue;
@@ -275,7 +267,7 @@ void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v
 
 std::size_t PressureSolver::bytes() const {
   const Impl& s = *impl_;
-  return s.multigrid.bytes() + s.regions.bytes() + 3 * s.solution.capacity() * sizeof(float) +
+  return s.multigrid.bytes() + s.regions.bytes() + 2 * s.solution.capacity() * sizeof(float) +
          2 * s.rows.capacity() * sizeof(double);
 }
 

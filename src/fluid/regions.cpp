@@ -9,6 +9,15 @@ using multigrid::kLanes;
 using multigrid::kRegular;
 using multigrid::Level;
 
+double sumOfRow(const float* values, int begin, int end) {
+  double part[8] = {};
+  int i = begin;
+  for (; i + 8 <= end; i += 8)
+    for (int k = 0; k < 8; ++k) part[k] += static_cast<double>(values[i + k]);
+  for (int k = 0; i < end; ++i, ++k) part[k] += static_cast<double>(values[i]);
+  return ((part[0] + part[4]) + (part[2] + part[6])) + ((part[1] + part[5]) + (part[3] + part[7]));
+}
+
 int Regions::findRoot(int run) {
   while (root_[run] != run) run = root_[run] = root_[root_[run]];
   return run;
@@ -106,10 +115,7 @@ void Regions::rebuild(const Boundary& boundary, const Level& links) {
   if (!anySealed_) return;
   for (const Run& run : runs_) {
     if (!regions_[run.region].sealed) continue;
-    const float* volume = boundary.volume.row(run.j);
-    double sum = 0;
-    for (int i = run.begin; i < run.end; ++i) sum += volume[i];
-    regions_[run.region].volume += sum;
+    regions_[run.region].volume += sumOfRow(boundary.volume.row(run.j), run.begin, run.end);
   }
   for (Region& region : regions_) {
     region.unweighted = !(region.volume > 1e-3 * static_cast<double>(region.cells));

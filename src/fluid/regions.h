@@ -11,6 +11,9 @@
 
 namespace smokebox {
 
+/// Sum of values[begin, end), in float64 and always in the same order.
+double sumOfRow(const float* values, int begin, int end);
+
 class Regions {
  public:
   struct Run {
