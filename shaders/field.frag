@@ -1,9 +1,8 @@
 #version 330 core
-// A scalar field in colours.
-#include "colormap.glsl"
-uniform sampler2D lattice;  // the value in r
+// A scalar field, its samples already in the colours of its map.
+uniform sampler2D lattice;  // linear light
 uniform float opacity;
 in vec2 place;
 out vec4 fragment;
 
-void main() { fragment = opacity * vec4(mapped(texture(lattice, place).r), 1.0); }
+void main() { fragment = opacity * vec4(texture(lattice, place).rgb, 1.0); }

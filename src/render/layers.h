@@ -35,16 +35,19 @@ struct Palette {
 class SmokeLayer {
  public:
   explicit SmokeLayer(const Gl& gl);
-  void draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
+  /// `onGround`: nothing is drawn below it yet, so that blending, which costs a fifth of the frame, can be
+  /// saved.
+  void draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame, bool onGround);
 
  private:
   void gather(const Snapshot& snapshot, const LatticeWindow& window);
   void fillClosedCells();
-  void chooseTiles(const Grid& grid, const LatticeWindow& window);
+  void chooseTiles(const Grid& grid, const LatticeWindow& window, const PictureFrame& frame);
   void drawTiles(const GlProgram& program, GlTexture& texture, const Snapshot& snapshot,
                  const LayerSpec& layer, const PictureFrame& frame);
 
-  GlProgram oneColor_, manyColors_;
+  const Gl& gl_;
+  GlProgram oneColor_, oneColorOnGround_, manyColors_, manyColorsOnGround_;
   GlTexture density_, colors_;
   GlInstances tiles_;
   Lattice lattice_, scratch_;
@@ -52,22 +55,31 @@ class SmokeLayer {
   std::vector<int> unreached_;    // closed samples without an open neighbour
   struct Tile {
     double x0, y0, x1, y1;
-  };  // m
+  };  // pixels
   std::vector<Tile> smoky_;
   std::vector<float> records_;
 };
 
-/// A scalar field in colours: pressure, vorticity or speed.
+/// A scalar field in colours: pressure, vorticity or speed. The colours are looked up for the samples of the
+/// refined lattice, which are finer than two pixels, and not for each pixel: evaluating the map there would
+/// double the frame.
 class FieldLayer {
  public:
   explicit FieldLayer(const Gl& gl);
   void draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
 
  private:
+  void gather(const Snapshot& snapshot, LayerKind kind, const PictureFrame& frame);
+  void color(const ColorMap& map, const std::array<double, 2>& range);
+
+  const Gl& gl_;
   GlProgram program_;
   GlTexture texture_;
   GlInstances quad_;
   Lattice lattice_, scratch_;
+  std::vector<LinearColor> table_;  // of tableOf_: both arms, the middle in the middle
+  const ColorMap* tableOf_ = nullptr;
+  std::vector<LinearColor> colors_;  // of the lattice's samples
 };
 
 /// How a field is shown: its colours, the range for the film, its name with the unit.

@@ -37,7 +37,8 @@ struct Renderer::Impl {
         probes(palette) {}
 
   void drawDomain(const Snapshot& snapshot, const PictureFrame& frame);
-  void drawInDomain(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
+  void drawInDomain(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
+                    bool onGround);
   void drawAround(const Snapshot& snapshot, const PictureFrame& frame);
   void drawOnTop(const Snapshot& snapshot, const PictureFrame& frame);
 };
@@ -89,24 +90,20 @@ void Renderer::Impl::drawDomain(const Snapshot& snapshot, const PictureFrame& fr
   const std::vector<LayerSpec>& layers = snapshot.view.layers;
   const auto fillsFluid = [](const LayerSpec& l) { return l.kind == LayerKind::smoke || isField(l.kind); };
   const auto lastFluid = std::find_if(layers.rbegin(), layers.rend(), fillsFluid).base();  // one past it
-  std::vector<const LayerSpec*> late;
+  std::vector<const LayerSpec*> order, late;
   for (auto layer = layers.begin(); layer != layers.end(); ++layer) {
-    if (layer == lastFluid)
-      for (const LayerSpec* waiting : late) drawInDomain(snapshot, *waiting, frame);
-    if (layer->kind == LayerKind::solids && layer < lastFluid)
-      late.push_back(&*layer);
-    else
-      drawInDomain(snapshot, *layer, frame);
+    if (layer == lastFluid) order.insert(order.end(), late.begin(), late.end());
+    (layer->kind == LayerKind::solids && layer < lastFluid ? late : order).push_back(&*layer);
   }
-  if (lastFluid == layers.end())
-    for (const LayerSpec* waiting : late) drawInDomain(snapshot, *waiting, frame);
+  if (lastFluid == layers.end()) order.insert(order.end(), late.begin(), late.end());
+  for (const LayerSpec* layer : order) drawInDomain(snapshot, *layer, frame, layer == order.front());
 }
 
-void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& layer,
-                                  const PictureFrame& frame) {
+void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
+                                  bool onGround) {
   switch (layer.kind) {
     case LayerKind::smoke:
-      smoke.draw(snapshot, layer, frame);
+      smoke.draw(snapshot, layer, frame, onGround);
       break;
     case LayerKind::solids:
       solids.draw(snapshot, layer, frame);

@@ -11,33 +11,41 @@ namespace {
 constexpr double kThicknessOnDark = 1.8, kThicknessOnLight = 3.0;
 constexpr float kInvisible = 1e-5f;  // a density that changes no pixel
 constexpr float kFilled = 1e-3f;     // weight of a closed cell that was given a value
-constexpr int kTileCells = 8;
-constexpr int kSplineReach = 2;  // cells that a value can be seen beyond its own
+constexpr int kTilePixels = 64;      // edge of the tiles that llvmpipe draws in
+constexpr int kRunCells = 16;        // cells that are looked at together
+constexpr int kReach = 3;           // cells beyond its own that a value can be seen, filled solids counted in
+constexpr double kReachPixels = 3;  // the same where cells are finer than pixels
 }  // namespace
 
 SmokeLayer::SmokeLayer(const Gl& gl)
-    : oneColor_(gl, "smoke.vert", "smoke.frag", "#define ONE_COLOR\n"),
+    : gl_(gl),
+      oneColor_(gl, "smoke.vert", "smoke.frag", "#define ONE_COLOR\n"),
+      oneColorOnGround_(gl, "smoke.vert", "smoke.frag", "#define ONE_COLOR\n#define ON_GROUND\n"),
       manyColors_(gl, "smoke.vert", "smoke.frag"),
+      manyColorsOnGround_(gl, "smoke.vert", "smoke.frag", "#define ON_GROUND\n"),
       density_(gl, GL_R32F, GL_RED, GL_FLOAT, GL_LINEAR),
       colors_(gl, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_LINEAR),
       tiles_(gl, {4, 4}) {}
 
-void SmokeLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
+void SmokeLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
+                      bool onGround) {
   if (snapshot.smoke.empty()) return;
   const Grid& grid = snapshot.grid;
   const Vec2 first{grid.h / 2, grid.h / 2};
   const LatticeWindow window = visibleWindow(frame, grid, first, grid.nx, grid.ny);
   gather(snapshot, window);
-  chooseTiles(snapshot.grid, window);
+  chooseTiles(snapshot.grid, window, frame);
   if (smoky_.empty()) return;
   fillClosedCells();
   lattice_.origin = {first.x + window.i0 * grid.h, first.y + window.j0 * grid.h};
   lattice_.spacing = grid.h;
   smoothFor(lattice_, frame.scale, scratch_);
+  if (onGround) gl_.Disable(GL_BLEND);
   if (lattice_.channels == 1)
-    drawTiles(oneColor_, density_, snapshot, layer, frame);
+    drawTiles(onGround ? oneColorOnGround_ : oneColor_, density_, snapshot, layer, frame);
   else
-    drawTiles(manyColors_, colors_, snapshot, layer, frame);
+    drawTiles(onGround ? manyColorsOnGround_ : manyColors_, colors_, snapshot, layer, frame);
+  gl_.Enable(GL_BLEND);
 }
 
 /// Densities (one colour), or the sums of colour times density and of density (many), and the open shares.
@@ -111,43 +119,52 @@ void SmokeLayer::fillClosedCells() {
   for (const int k : unreached_) fill(k % nx, k / nx);
 }
 
-/// The parts of the domain where any smoke can be seen: nothing is drawn elsewhere.
-void SmokeLayer::chooseTiles(const Grid& grid, const LatticeWindow& window) {
+/// The parts of the picture where any smoke can be seen: nothing is drawn elsewhere. They are made of the
+/// rasteriser's own tiles, which it fills far faster whole than in part.
+void SmokeLayer::chooseTiles(const Grid& grid, const LatticeWindow& window, const PictureFrame& frame) {
   const int channels = lattice_.channels, last = channels - 1;
-  const int tilesX = (window.nx() + kTileCells - 1) / kTileCells,
-            tilesY = (window.ny() + kTileCells - 1) / kTileCells;
-  std::vector<char> marked(std::size_t(tilesX) * tilesY, 0);
+  const int tilesX = (frame.width + kTilePixels - 1) / kTilePixels;
+  const int tilesY = (frame.height + kTilePixels - 1) / kTilePixels;
+  std::vector<char> smoky(std::size_t(tilesX) * tilesY, 0);
+  auto tileOf = [](double pixel, int count) {
+    return std::clamp(static_cast<int>(std::floor(pixel / kTilePixels)), 0, count - 1);
+  };
   for (int j = 0; j < window.ny(); ++j)
-    for (int tile = 0; tile < tilesX; ++tile) {
-      const int begin = tile * kTileCells, end = std::min(begin + kTileCells, window.nx());
+    for (int begin = 0; begin < window.nx(); begin += kRunCells) {
+      const int end = std::min(begin + kRunCells, window.nx());
+      const float* row = lattice_.row(j);
       float most = 0;
-      for (int i = begin; i < end; ++i) most = std::max(most, lattice_.row(j)[i * channels + last]);
-      if (most > kInvisible) marked[std::size_t(j / kTileCells) * tilesX + tile] = 1;
+      for (int i = begin; i < end; ++i) most = std::max(most, row[i * channels + last]);
+      if (most <= kInvisible) continue;
+      const Vec2 low =
+          frame.toPixels({(window.i0 + begin - kReach) * grid.h, (window.j0 + j - kReach) * grid.h});
+      const Vec2 high =
+          frame.toPixels({(window.i0 + end + kReach) * grid.h, (window.j0 + j + 1 + kReach) * grid.h});
+      const int x1 = tileOf(high.x + kReachPixels, tilesX), y1 = tileOf(low.y + kReachPixels, tilesY);
+      for (int y = tileOf(high.y - kReachPixels, tilesY); y <= y1; ++y)
+        for (int x = tileOf(low.x - kReachPixels, tilesX); x <= x1; ++x)
+          smoky[std::size_t(y) * tilesX + x] = 1;
     }
-  static_assert(kSplineReach <= kTileCells);
   smoky_.clear();
-  auto isSmoky = [&](int tileX, int tileY) {
-    for (int b = std::max(tileY - 1, 0); b <= std::min(tileY + 1, tilesY - 1); ++b)
-      for (int a = std::max(tileX - 1, 0); a <= std::min(tileX + 1, tilesX - 1); ++a)
-        if (marked[std::size_t(b) * tilesX + a]) return true;
-    return false;
-  };
-  auto edgeX = [&](int tile) {
-    return std::clamp((window.i0 + tile * kTileCells) * grid.h, 0.0, grid.width());
-  };
-  auto edgeY = [&](int tile) {
-    return std::clamp((window.j0 + tile * kTileCells) * grid.h, 0.0, grid.height());
-  };
-  for (int tileY = 0; tileY < tilesY; ++tileY)
-    for (int tileX = 0; tileX < tilesX;) {
-      if (!isSmoky(tileX, tileY)) {
-        ++tileX;
-        continue;
-      }
-      const int begin = tileX;
-      while (tileX < tilesX && isSmoky(tileX, tileY)) ++tileX;
-      smoky_.push_back({edgeX(begin), edgeY(tileY), edgeX(tileX), edgeY(tileY + 1)});
+  for (int y = 0; y < tilesY;) {
+    // Rows of tiles that are alike are drawn as one.
+    const char* row = smoky.data() + std::size_t(y) * tilesX;
+    int pastY = y + 1;
+    while (pastY < tilesY && std::equal(row, row + tilesX, smoky.data() + std::size_t(pastY) * tilesX))
+      ++pastY;
+    for (int x = 0; x < tilesX;) {
+      const int begin = x;
+      while (x < tilesX && row[x]) ++x;
+      if (x > begin)
+        smoky_.push_back({std::max(frame.left, double(begin * kTilePixels)),
+                          std::max(frame.top, double(y * kTilePixels)),
+                          std::min(frame.right, double(x * kTilePixels)),
+                          std::min(frame.bottom, double(pastY * kTilePixels))});
+      else
+        ++x;
     }
+    y = pastY;
+  }
 }
 
 void SmokeLayer::drawTiles(const GlProgram& program, GlTexture& texture, const Snapshot& snapshot,
@@ -163,15 +180,16 @@ void SmokeLayer::drawTiles(const GlProgram& program, GlTexture& texture, const S
   records_.clear();
   for (const Tile& tile : smoky_) {
     if (tile.x0 >= tile.x1 || tile.y0 >= tile.y1) continue;
-    const Vec2 a = frame.toPixels({tile.x0, tile.y1}), b = frame.toPixels({tile.x1, tile.y0});
-    records_.insert(records_.end(), {float(a.x), float(a.y), float(b.x), float(b.y), u(tile.x0), v(tile.y1),
-                                     u(tile.x1), v(tile.y0)});
+    const Vec2 upperLeft = frame.toWorld({tile.x0, tile.y0}), lowerRight = frame.toWorld({tile.x1, tile.y1});
+    records_.insert(records_.end(), {float(tile.x0), float(tile.y0), float(tile.x1), float(tile.y1),
+                                     u(upperLeft.x), v(upperLeft.y), u(lowerRight.x), v(lowerRight.y)});
   }
   program.use();
   program.set("pictureSize", float(frame.width), float(frame.height));
   program.set("lattice", 0);
   program.set("thickness", float((frame.darkGround ? kThicknessOnDark : kThicknessOnLight) / std::log(2.0)));
   program.set("opacity", float(layer.opacity));
+  program.set("ground", linear(snapshot.view.background));
   program.set("color", linear(snapshot.smoke.front().color));
   tiles_.draw(records_);
 }

@@ -175,6 +175,22 @@ TEST(RenderPicture, SmokeIsNeverBlocky) {
   EXPECT_GT(at(image, 640, 360).g, at(image, 670, 360).g + 10);
 }
 
+TEST(RenderPicture, GroundShowsUnchangedBesideSmoke) {
+  // Where smoke ends, the ground keeps its exact colour, whether smoke is drawn first or over something else.
+  for (const bool first : {true, false}) {
+    Snapshot snapshot = scene(64, 36, 4, {LayerKind::smoke});
+    if (!first) {
+      snapshot.view.layers.insert(snapshot.view.layers.begin(), LayerSpec{});
+      snapshot.view.layers.front().kind = LayerKind::probes;
+    }
+    snapshot.smoke.push_back({{1, 1, 1}, Field(64, 36)});
+    for (int j = 0; j < 36; ++j) snapshot.smoke[0].value(32, j) = 1;
+    const Image image = drawn(snapshot, 640, 360);
+    for (int x = 0; x < 640; ++x)
+      ASSERT_TRUE(std::abs(x - 325) < 40 || at(image, x, 100) == rgb(snapshot.view.background)) << x;
+  }
+}
+
 TEST(RenderPicture, SmokeFollowsBeerAndLambert) {
   // Twice the smoke lets through the square of what once lets through.
   auto shareAt = [](float density) {
