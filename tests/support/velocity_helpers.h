@@ -1,4 +1,4 @@
-// Boundaries filled by hand and a plain projection, so that the velocity stages are tested by themselves.
+// Boundaries filled by hand, so that the velocity stages are tested by themselves.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -101,92 +101,6 @@ inline void addSolid(Boundary& b, const std::function<double(Vec2)>& distance,
   }
   ++b.version;
 }
-
-/// Projection by conjugate gradients in double, to rounding: slow, and plain enough to be trusted.
-class PlainProjection {
- public:
-  explicit PlainProjection(const Boundary& b) : b_(b), nx_(b.grid.nx), ny_(b.grid.ny) {}
-
-  /// phi, if given, has the increment added.
-  void project(Field& u, Field& v, Field* phi, double tolerance = 1e-10) const {
-    const Field &ox = b_.openX, &oy = b_.openY;
-    const int n = nx_ * ny_;
-    std::vector<double> rhs(n), x(n, 0.0), r, p, ap(n);
-    closeWalls(u, v);
-    double largest = 0;
-    for (int j = 0; j < ny_; ++j)
-      for (int i = 0; i < nx_; ++i) {
-        const double out = (flux(ox, b_.wallU, u, i + 1, j) - flux(ox, b_.wallU, u, i, j)) +
-                           (flux(oy, b_.wallV, v, i, j + 1) - flux(oy, b_.wallV, v, i, j));
-        rhs[j * nx_ + i] = -out;
-        largest = std::max(largest, std::fabs(out));
-      }
-    r = rhs;
-    p = r;
-    double rho = dot(r, r);
-    const double enough = tolerance * tolerance * std::max(rho, 1e-30);
-    for (int k = 0; k < 20 * (nx_ + ny_) && rho > enough; ++k) {
-      apply(p, ap);
-      const double curvature = dot(p, ap);
-      if (!(curvature > 0)) break;
-      const double alpha = rho / curvature;
-      for (int m = 0; m < n; ++m) x[m] += alpha * p[m], r[m] -= alpha * ap[m];
-      const double last = rho;
-      rho = dot(r, r);
-      for (int m = 0; m < n; ++m) p[m] = r[m] + rho / last * p[m];
-    }
-    auto at = [&](int i, int j) { return value(x, i, j); };
-    for (int j = 0; j <= ny_; ++j)
-      for (int i = 0; i <= nx_; ++i) {
-        if (j < ny_ && ox(i, j) > 0) u(i, j) -= static_cast<float>(at(i, j) - at(i - 1, j));
-        if (i < nx_ && oy(i, j) > 0) v(i, j) -= static_cast<float>(at(i, j) - at(i, j - 1));
-      }
-    if (phi)
-      for (int j = 0; j < ny_; ++j)
-        for (int i = 0; i < nx_; ++i) (*phi)(i, j) += static_cast<float>(x[j * nx_ + i]);
-  }
-
- private:
-  static double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    double s = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) s += a[k] * b[k];
-    return s;
-  }
-  double flux(const Field& open, const Field& wall, const Field& f, int i, int j) const {
-    if (i == nx_ && b_.periodicX()) i = 0;
-    if (j == ny_ && b_.periodicY()) j = 0;
-    const double a = open(i, j);
-    return a * f(i, j) + (1 - a) * wall(i, j);
-  }
-  double value(const std::vector<double>& x, int i, int j) const {
-    if (b_.periodicX()) i = (i + nx_) % nx_;
-    if (b_.periodicY()) j = (j + ny_) % ny_;
-    return i < 0 || j < 0 || i >= nx_ || j >= ny_ ? 0 : x[j * nx_ + i];
-  }
-  double share(const Field& open, int i, int j) const {
-    return open(i == nx_ && b_.periodicX() ? 0 : i, j == ny_ && b_.periodicY() ? 0 : j);
-  }
-  void apply(const std::vector<double>& x, std::vector<double>& out) const {
-    for (int j = 0; j < ny_; ++j)
-      for (int i = 0; i < nx_; ++i) {
-        const double here = x[j * nx_ + i];
-        out[j * nx_ + i] = share(b_.openX, i, j) * (here - value(x, i - 1, j)) +
-                           share(b_.openX, i + 1, j) * (here - value(x, i + 1, j)) +
-                           share(b_.openY, i, j) * (here - value(x, i, j - 1)) +
-                           share(b_.openY, i, j + 1) * (here - value(x, i, j + 1));
-      }
-  }
-  void closeWalls(Field& u, Field& v) const {
-    for (int j = 0; j <= ny_; ++j)
-      for (int i = 0; i <= nx_; ++i) {
-        if (j < ny_ && b_.openX(i, j) == 0) u(i, j) = b_.wallU(i, j);
-        if (i < nx_ && b_.openY(i, j) == 0) v(i, j) = b_.wallV(i, j);
-      }
-  }
-
-  const Boundary& b_;
-  int nx_, ny_;
-};
 
 constexpr std::array<WallKind, 4> kPeriodic{WallKind::periodic, WallKind::periodic, WallKind::periodic,
                                             WallKind::periodic};
