@@ -19,10 +19,10 @@ void closeSide(const Boundary& boundary, Side side, Field& open) {
     for (int j = 0; j < grid.ny; ++j) open(side == Side::left ? 0 : grid.nx, j) = 0;
 }
 
-void setShares(const GridCover& cover, Boundary& boundary) {
-  boundary.openX = cover.openX;
-  boundary.openY = cover.openY;
-  boundary.volume = cover.volume;
+void setShares(GridCover& cover, Boundary& boundary) {
+  boundary.openX.swap(cover.openX);
+  boundary.openY.swap(cover.openY);
+  boundary.volume.swap(cover.volume);
   closeSide(boundary, Side::left, boundary.openX);
   closeSide(boundary, Side::right, boundary.openX);
   closeSide(boundary, Side::bottom, boundary.openY);
@@ -95,17 +95,13 @@ void SolidsOnGrid::cover(const std::vector<MovingSolid>& solids, bool shapesMove
     boundary.wallU = Field(grid.nx, grid.ny);
     boundary.wallV = Field(grid.nx, grid.ny);
   }
-  if (!shaped(weightU_, grid)) {
-    weightU_ = Field(grid.nx, grid.ny);
-    weightV_ = Field(grid.nx, grid.ny);
-  }
   if (shapesMoved || !shaped(boundary.openX, grid)) {
     placeCopies(solids, boundary);
     coverGrid(grid, outlines_, cover_, {boundary.periodicX(), boundary.periodicY()});
     setShares(cover_, boundary);
   }
   const CoveredBy by{solids, copies_, cover_};
-  setWallVelocities(by, boundary, weightU_, weightV_);
+  setWallVelocities(by, boundary, weightsU_, weightsV_);
   findCutLinks(by, true, boundary, boundary.linksU);
   findCutLinks(by, false, boundary, boundary.linksV);
   sortLinks(grid.ny + 1, boundary.linksU, sorted_, rowStart_);

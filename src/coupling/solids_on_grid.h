@@ -35,6 +35,15 @@ struct MovingSolid {
   Vec2 velocityAt(Vec2 p) const { return velocity + spin * perpendicular(p - origin); }
 };
 
+/// Working memory: which share of a face has its velocity summed so far, and which faces these are.
+struct FaceIndex {
+  int i = 0, j = 0;
+};
+struct FaceWeights {
+  Field share;
+  std::vector<FaceIndex> touched;
+};
+
 class SolidsOnGrid {
  public:
   /// Sets the boundary's fields for these solids; boundary.grid and boundary.sides are set already.
@@ -42,6 +51,7 @@ class SolidsOnGrid {
   void cover(const std::vector<MovingSolid>& solids, bool shapesMoved, Boundary& boundary);
 
   /// The geometry behind the fractions, in terms of copies(): solids and their images beyond periodic sides.
+  /// Its fields are the boundary's.
   const GridCover& geometry() const { return cover_; }
   struct Copy {
     int solid = 0;
@@ -55,7 +65,7 @@ class SolidsOnGrid {
   GridCover cover_;
   std::vector<Copy> copies_;
   std::vector<SolidOutline> outlines_;  // of the copies
-  Field weightU_, weightV_;             // share of a face whose velocity is summed so far; 0 between calls
+  FaceWeights weightsU_, weightsV_;
   std::vector<CutLink> sorted_;
   std::vector<int> rowStart_;
 };

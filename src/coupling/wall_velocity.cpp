@@ -9,14 +9,15 @@ namespace {
 /// One kind of faces at a time; coordinates are swapped so that "along" is the direction of the face's line.
 class FaceVelocities {
  public:
-  FaceVelocities(const CoveredBy& by, bool xFaces, const Grid& grid, Field& wall, Field& weight)
+  FaceVelocities(const CoveredBy& by, bool xFaces, const Grid& grid, Field& wall, FaceWeights& weights)
       : by_(by),
         xFaces_(xFaces),
         h_(grid.h),
         lines_(xFaces ? grid.nx + 1 : grid.ny + 1),
         faces_(xFaces ? grid.ny : grid.nx),
         wall_(wall),
-        weight_(weight) {}
+        weight_(weights.share),
+        touched_(weights.touched) {}
 
   void run(bool joined) {
     const std::vector<LineCover>& covers = xFaces_ ? by_.geometry.alongY : by_.geometry.alongX;
@@ -50,10 +51,15 @@ class FaceVelocities {
     const Vec2 velocity = by_.velocityAt(copy, xFaces_ ? Vec2{across, middle} : Vec2{middle, across});
     const double normal = xFaces_ ? velocity.x : velocity.y;
     float& wall = at(wall_, line, face);
+    const double share = (hi - lo) / h_;
+    if (share > 1 - 1e-9 && line > 0 && line < lines_ - 1) {  // nothing else closes this face
+      wall = static_cast<float>(normal);
+      return;
+    }
     float& weight = at(weight_, line, face);
-    const double share = (hi - lo) / h_, sum = weight + share;
-    // A running mean: one part alone leaves its velocity untouched by rounding.
-    wall = static_cast<float>(wall + (normal - wall) * (share / sum));
+    if (weight == 0) touched_.push_back(xFaces_ ? FaceIndex{line, face} : FaceIndex{face, line});
+    const double sum = weight + share;
+    wall = static_cast<float>(wall + (normal - wall) * (share / sum));  // a running mean
     weight = static_cast<float>(sum);
   }
 
@@ -62,6 +68,7 @@ class FaceVelocities {
   double h_;
   int lines_, faces_;
   Field &wall_, &weight_;
+  std::vector<FaceIndex>& touched_;
 };
 
 /// Adds the wall's or inflow's own velocity on the part of its faces that no solid covers.
@@ -81,30 +88,32 @@ void addSide(const Boundary& boundary, Side side, Field& wall, const Field& weig
   }
 }
 
-/// No velocity where nothing closes the face; the weights go back to 0.
-void finish(const Field& open, int columns, int rows, Field& wall, Field& weight) {
-  for (int j = 0; j < rows; ++j) {
-    const float* openRow = open.row(j);
-    float* wallRow = wall.row(j);
-    for (int i = 0; i < columns; ++i) wallRow[i] = openRow[i] == 1 ? 0.0f : wallRow[i];
-    std::fill_n(weight.row(j), columns, 0.0f);
+/// No velocity where so little closes the face that it counts as open; the weights go back to 0.
+void finish(const Field& open, Field& wall, FaceWeights& weights) {
+  for (const FaceIndex& face : weights.touched) {
+    if (open(face.i, face.j) == 1) wall(face.i, face.j) = 0;
+    weights.share(face.i, face.j) = 0;
   }
+  weights.touched.clear();
 }
 
 }  // namespace
 
-void setWallVelocities(const CoveredBy& by, Boundary& boundary, Field& weightU, Field& weightV) {
+void setWallVelocities(const CoveredBy& by, Boundary& boundary, FaceWeights& ofU, FaceWeights& ofV) {
   const Grid& grid = boundary.grid;
+  for (FaceWeights* weights : {&ofU, &ofV})
+    if (weights->share.nx() != grid.nx || weights->share.ny() != grid.ny)
+      weights->share = Field(grid.nx, grid.ny);
   boundary.wallU.fill(0);
   boundary.wallV.fill(0);
-  FaceVelocities(by, true, grid, boundary.wallU, weightU).run(boundary.periodicX());
-  FaceVelocities(by, false, grid, boundary.wallV, weightV).run(boundary.periodicY());
-  addSide(boundary, Side::left, boundary.wallU, weightU);
-  addSide(boundary, Side::right, boundary.wallU, weightU);
-  addSide(boundary, Side::bottom, boundary.wallV, weightV);
-  addSide(boundary, Side::top, boundary.wallV, weightV);
-  finish(boundary.openX, grid.nx + 1, grid.ny, boundary.wallU, weightU);
-  finish(boundary.openY, grid.nx, grid.ny + 1, boundary.wallV, weightV);
+  FaceVelocities(by, true, grid, boundary.wallU, ofU).run(boundary.periodicX());
+  FaceVelocities(by, false, grid, boundary.wallV, ofV).run(boundary.periodicY());
+  addSide(boundary, Side::left, boundary.wallU, ofU.share);
+  addSide(boundary, Side::right, boundary.wallU, ofU.share);
+  addSide(boundary, Side::bottom, boundary.wallV, ofV.share);
+  addSide(boundary, Side::top, boundary.wallV, ofV.share);
+  finish(boundary.openX, boundary.wallU, ofU);
+  finish(boundary.openY, boundary.wallV, ofV);
   wrapFaces(boundary, true, boundary.wallU);
   wrapFaces(boundary, false, boundary.wallV);
 }

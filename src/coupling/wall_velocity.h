@@ -17,7 +17,7 @@ struct CoveredBy {
 
 /// Sets boundary.wallU, wallV from the solids and the sides. The weights are all 0, and are so again
 /// afterwards.
-void setWallVelocities(const CoveredBy& by, Boundary& boundary, Field& weightU, Field& weightV);
+void setWallVelocities(const CoveredBy& by, Boundary& boundary, FaceWeights& ofU, FaceWeights& ofV);
 
 /// Copies what lies beyond periodic sides from the other side, 0 beyond the others; repeats column nx, row
 /// ny.

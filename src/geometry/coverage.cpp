@@ -245,10 +245,10 @@ void snapFaces(const Grid& grid, JoinedSides joined, GridCover& cover) {
 }
 
 void resetFields(const Grid& grid, GridCover& cover) {
-  if (cover.volume.nx() != grid.nx || cover.volume.ny() != grid.ny) {
-    cover.openX = Field(grid.nx, grid.ny);
-    cover.openY = Field(grid.nx, grid.ny);
-    cover.volume = Field(grid.nx, grid.ny);
+  for (Field* field : {&cover.openX, &cover.openY, &cover.volume})
+    if (field->nx() != grid.nx || field->ny() != grid.ny) *field = Field(grid.nx, grid.ny);
+  if (static_cast<long>(cover.work.pieceOfCell.size()) != grid.cells() ||
+      static_cast<int>(cover.alongX.size()) != 2 * grid.ny + 1) {
     cover.alongX.resize(2 * grid.ny + 1);
     cover.alongY.resize(2 * grid.nx + 1);
     cover.work.pieceOfCell.assign(grid.cells(), -1);

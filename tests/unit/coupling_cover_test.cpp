@@ -128,7 +128,9 @@ TEST(SolidsOnGrid, VersionFollowsTheFractions) {
   EXPECT_EQ(b.wallU(8, 8), 1);
   EXPECT_EQ(b.wallV(8, 8), 2);
   for (const CutLink& link : b.linksU) {
-    if (link.solid == 0) { EXPECT_EQ(link.drag, 0.5f); }
+    if (link.solid == 0) {
+      EXPECT_EQ(link.drag, 0.5f);
+    }
   }
   grid.cover({}, true, b);
   EXPECT_GT(b.version, version);
