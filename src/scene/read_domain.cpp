@@ -30,7 +30,10 @@ bool isWhole(double ratio) {
 constexpr double kBytesPerCell = 200;
 
 double physicalMemory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  // Asked for once: it opens a file, and a scene with many events is read many times.
+  static const double bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  return bytes;
 }
 
 }  // namespace

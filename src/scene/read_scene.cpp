@@ -28,7 +28,10 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   readSmoke(scene, spec);
   readSolids(scene, spec);
   readProbes(scene, spec);
-  readEvents(scene, spec);
+  if (events)
+    readEvents(scene, spec);
+  else
+    scene.find("events");  // of a trial: they were read before, and nothing can set them
   readView(scene, spec);
   readMethod(scene, spec);
   for (const char* key : kNotYet) scene.unsupported(key);
@@ -36,7 +39,7 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   if (reader.errors() == 0) {
     checkInflow(scene, spec);
     checkFormulas(scene, spec);
-    checkPlacement(scene, spec);
+    if (events) checkPlacement(scene, spec);
   }
   if (events) checkSetActions(root, name, spec, reader);
   return spec;

@@ -9,7 +9,8 @@
 
 namespace smokebox {
 
-/// Reads and checks a whole tree; `events` tells whether the values that events set are tried out too.
+/// Reads and checks a whole tree. Without `events` it is a trial of a value that an event sets: no events, no
+/// warnings.
 SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Problem>& problems,
                     bool events = true);
 
