@@ -21,21 +21,22 @@ void ColorBarLayer::draw(const Snapshot& snapshot, const std::vector<const Layer
   const double thin = frame.line(1);
   const Color ink = frame.darkGround ? Color{0.94f, 0.95f, 0.97f} : Color{0.08f, 0.09f, 0.11f};
   const Color plate = frame.darkGround ? Color{0.02f, 0.025f, 0.03f} : Color{1, 1, 1};
-  const int panelHeight =
-      std::clamp(static_cast<int>(frame.height * 0.5), 6 * size, std::max(6 * size, frame.height));
+  // Half of the picture, but no longer than a bar of this width looks well, and never too short for its
+  // numbers.
+  const int panelHeight = std::max(6 * size, std::min(frame.height / 2, 22 * size));
   const int top = (frame.height - panelHeight) / 2, bottom = top + panelHeight;
 
   int right = frame.width - margin;
   for (auto field = fields.rbegin(); field != fields.rend(); ++field) {
     const FieldStyle style = fieldStyle(snapshot, **field, frame);
-    const Ticks ticks = ticksFor(style.range[0], style.range[1], std::max(2, panelHeight * 5 / (12 * size)));
+    const Ticks ticks = ticksFor(style.range[0], style.range[1], std::clamp(panelHeight / (2 * size), 2, 10));
     int widest = 0;
     for (const double value : ticks.values)
       widest = std::max(widest, palette_.text.advance(ticks.label(value), size));
     const int title = palette_.text.advance(style.label, size);
     const int inner = std::max(title, strip + tickLength + size / 3 + widest);
     const int left = right - inner - 2 * pad;
-    palette_.panels.add(left, top, right, bottom, linear(plate, 0.8), linear(ink, 0.12), 0.5 * size, thin);
+    palette_.panels.add(left, top, right, bottom, linear(plate, 0.92), linear(ink, 0.12), 0.5 * size, thin);
 
     const int barTop = top + 2 * pad + size, barBottom = bottom - pad;
     const int barLeft = left + pad, barRight = barLeft + strip;

@@ -9,6 +9,9 @@ namespace smokebox {
 namespace {
 constexpr int kSmallestFont = 8;  // pixels; below it no letter can be told from another
 constexpr double kCaptionUnits = 29, kTimeUnits = 22;
+// Opacity of the plate below a caption. Light that comes through a dark plate is seen more than through a
+// light one.
+constexpr double kDarkPlate = 0.75, kLightPlate = 0.55;
 constexpr double kMostCaptionWidth = 0.86;  // of the picture's
 
 /// Grows a coverage by `reach` pixels and softens it: the largest value nearby, fading with the distance.
@@ -108,7 +111,8 @@ void TextLayer::drawCaptions(const Snapshot& snapshot, const LayerSpec& layer, c
   const int top = bottom - 2 * padY - ascent_ - descent_ - static_cast<int>(lines_.size() - 1) * lineHeight_;
   const double middle = frame.width / 2.0;
   palette_.panels.add(middle - widest / 2.0 - padX, top, middle + widest / 2.0 + padX, bottom,
-                      linear(colors.halo, 0.5 * layer.opacity), {}, 0.3 * size);
+                      linear(colors.halo, (frame.darkGround ? kDarkPlate : kLightPlate) * layer.opacity), {},
+                      0.3 * size);
   palette_.panels.flush();
   for (const CaptionLine& line : lines_)
     palette_.sprites.add(line.mask, linear(colors.halo, 0.35 * layer.opacity),
