@@ -30,6 +30,9 @@ inline unsigned bitsOf(const LaneMask& m) {
   return static_cast<unsigned>(sum);
 }
 
+/// A bit for each block of chunk `c` that is inside the grid.
+unsigned columnsOf(const Level& level, int c) { return (1u << std::min(kLanes, level.nx - c * kLanes)) - 1; }
+
 Towards opposite(Towards t) { return static_cast<Towards>(static_cast<int>(t) ^ 1); }
 
 struct Cell {
@@ -110,7 +113,7 @@ void Builder::findParts(Level& fine, Level& coarse) {
   fine.split.clear();
   fine.child.clear();
   fine.splitBegin.assign(coarse.ny + 1, 0);
-  splitChunk_.assign(coarse.chunk.size(), 0);
+  splitBlocks_.assign(coarse.chunk.size(), 0);
   regularChunk_.assign(coarse.chunk.size(), 0);
   if (slot_.size() < fine.x.size()) slot_.resize(fine.x.size(), -1);
 
@@ -126,10 +129,13 @@ void Builder::findParts(Level& fine, Level& coarse) {
         regularChunk_[J * coarse.chunks + C] = 1;
         continue;
       }
-      const int before = coarse.extras;
-      for (unsigned left = suspects(fine, coarse, C, J); left != 0; left &= left - 1)
-        splitBlock(fine, coarse, C * kLanes + std::countr_zero(left), J);
-      splitChunk_[J * coarse.chunks + C] = coarse.extras > before;
+      unsigned split = 0;
+      for (unsigned left = suspects(fine, coarse, C, J); left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left), before = coarse.extras;
+        splitBlock(fine, coarse, C * kLanes + k, J);
+        split |= static_cast<unsigned>(coarse.extras > before) << k;
+      }
+      splitBlocks_[J * coarse.chunks + C] = static_cast<std::uint16_t>(split);
     }
     for (int q = 0; q < 2 && 2 * J + q < fine.ny; ++q) {
       fine.prolongBegin[2 * J + q] = static_cast<int>(fine.prolong.size());
@@ -178,8 +184,7 @@ unsigned Builder::suspects(const Level& fine, const Level& coarse, int C, int J)
       for (int k = 0; k < columns; ++k) bits |= static_cast<unsigned>(base[k] >= 0) << (k / 2);
     }
   }
-  const int blocks = std::min(kLanes, coarse.nx - C * kLanes);
-  return bits & (blocks == kLanes ? 0xffffu : (1u << blocks) - 1);
+  return bits & columnsOf(coarse, C);
 }
 
 int Builder::findRoot(int member) {
@@ -337,7 +342,7 @@ void Builder::fillRegular(Level& coarse, int C, int J) {
   store(coarse.row(coarse.ay, J) + C * kLanes, zero + 1.0f);
 }
 
-// The left and lower faces of a chunk where neither it nor its neighbours have extra unknowns.
+// The left and lower faces of a chunk, as they are where neither it nor its neighbours have extra unknowns.
 void Builder::linkWhole(const Level& fine, Level& coarse, int C, int J) {
   const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
   const LaneMask odd = even + 1;
@@ -354,7 +359,8 @@ void Builder::linkWhole(const Level& fine, Level& coarse, int C, int J) {
   }
   const Lanes below = load(ay), belowNext = pair ? load(ay + kLanes) : zero;
   const Lanes left = __builtin_shuffle(first, second, even) * load(factorX_.data() + I);
-  const float factorY = static_cast<float>(fine.distanceY[j] / coarse.distanceY[J]);
+  const bool self = coarse.periodicY && coarse.ny == 1;
+  const float factorY = self ? 0.0f : static_cast<float>(fine.distanceY[j] / coarse.distanceY[J]);
   const Lanes down =
       (__builtin_shuffle(below, belowNext, even) + __builtin_shuffle(below, belowNext, odd)) * factorY;
   store(coarse.row(coarse.ax, J) + I, left);
@@ -367,26 +373,32 @@ void Builder::linkGrid(const Level& fine, Level& coarse) {
   factorX_.assign(static_cast<std::size_t>(coarse.chunks) * kLanes, 0);
   for (int I = 0; I < coarse.nx; ++I)
     factorX_[I] = static_cast<float>(fine.distanceX[2 * I] / coarse.distanceX[I]);
-  for (int J = 0; J <= coarse.ny; ++J)
+  if (coarse.periodicX && coarse.nx == 1) factorX_[0] = 0;  // a link to itself
+  for (int J = 0; J < coarse.ny; ++J) {
+    const std::uint16_t* split = splitBlocks_.data() + J * coarse.chunks;
+    const std::uint16_t* below = J > 0              ? split - coarse.chunks
+                                 : coarse.periodicY ? splitBlocks_.data() + (coarse.ny - 1) * coarse.chunks
+                                                    : nullptr;
     for (int C = 0; C < coarse.chunks; ++C) {
-      const int first = C * kLanes, last = std::min(first + kLanes, coarse.nx);
-      if (J < coarse.ny && J > 0 && C > 0) {
-        const int k = J * coarse.chunks + C;
-        if (!splitChunk_[k] && !splitChunk_[k - 1] && !splitChunk_[k - coarse.chunks]) {
-          if (regularChunk_[k])
-            fillRegular(coarse, C, J);
-          else
-            linkWhole(fine, coarse, C, J);
-          if (last == coarse.nx) linkLeft(fine, coarse, last, J);
-          continue;
-        }
-      }
-      for (int I = first; I < last; ++I) {
-        if (J < coarse.ny) linkLeft(fine, coarse, I, J);
-        linkBelow(fine, coarse, I, J);
-      }
-      if (J < coarse.ny && last == coarse.nx) linkLeft(fine, coarse, last, J);
+      if (C > 0 && J > 0 && regularChunk_[J * coarse.chunks + C])
+        fillRegular(coarse, C, J);
+      else
+        linkWhole(fine, coarse, C, J);
+      // Faces beside a split block are done one by one.
+      unsigned beforeFirst = 0;
+      if (C > 0)
+        beforeFirst = split[C - 1] >> (kLanes - 1);
+      else if (coarse.periodicX)
+        beforeFirst = coarse.extraBase[J * coarse.nx + coarse.nx - 1] >= 0;
+      const unsigned here = split[C], columns = columnsOf(coarse, C);
+      for (unsigned left = (here | (here << 1) | beforeFirst) & columns; left != 0; left &= left - 1)
+        linkLeft(fine, coarse, C * kLanes + std::countr_zero(left), J);
+      for (unsigned left = (here | (below ? below[C] : 0u)) & columns; left != 0; left &= left - 1)
+        linkBelow(fine, coarse, C * kLanes + std::countr_zero(left), J);
     }
+    linkLeft(fine, coarse, coarse.nx, J);
+  }
+  for (int I = 0; I < coarse.nx; ++I) linkBelow(fine, coarse, I, coarse.ny);
 }
 
 // Links that cross a face of the coarse grid and are kept in the fine level's lists.
@@ -611,7 +623,7 @@ void Builder::classify(Level& level) {
 std::size_t Builder::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return of(members_) + of(order_) + of(sizes_) + of(labels_) + of(prolong_[0]) + of(prolong_[1]) + of(raw_) +
-         of(slot_) + of(specials_) + of(counts_) + of(entries_) + of(used_) + of(splitChunk_) +
+         of(slot_) + of(specials_) + of(counts_) + of(entries_) + of(used_) + of(splitBlocks_) +
          of(regularChunk_) + of(disturbed_);
 }
 

@@ -63,7 +63,8 @@ class Builder {
   std::vector<int> specials_, counts_;
   std::vector<Level::Entry> entries_;
   std::vector<int> used_;
-  std::vector<std::uint8_t> splitChunk_;    // by chunk of the coarse level: has extra unknowns
+  std::vector<std::uint16_t>
+      splitBlocks_;  // by chunk of the coarse level: bits of the blocks with extra unknowns
   std::vector<std::uint8_t> regularChunk_;  // by chunk of the coarse level: covers regular chunks only
   std::vector<std::uint16_t> disturbed_;    // by chunk: cells beside a solid
 };
