@@ -1,6 +1,7 @@
 #include "fluid/advection_kernel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace smokebox {
 

@@ -7,8 +7,6 @@
 // of the deconvolved flux (26 F_k - F_(k-1) - F_(k+1)) / 24 and so conservative. Mirrored input gives
 // mirrored output to the bit.
 #pragma once
-#include <cmath>
-
 #include "base/field.h"
 
 namespace smokebox {
@@ -27,20 +25,5 @@ struct AdvectionStage {
 void advanceRowsOfU(const AdvectionStage& stage, int begin, int end);
 /// Rows [begin, end) of v (rows up to ny-1).
 void advanceRowsOfV(const AdvectionStage& stage, int begin, int end);
-
-/// Value between a and b of (m2 m1 a | b p1 p2), by 5th-order upwind interpolation for a transport velocity
-/// U.
-inline float fifthOrder(float m2, float m1, float a, float b, float p1, float p2, float U) {
-  const float even = 150 * (a + b) - 25 * (m1 + p1) + 3 * (m2 + p2);
-  const float odd = 3 * ((p2 - m2) - 5 * (p1 - m1) + 10 * (b - a));
-  return (U > 0 ? even - odd : even + odd) * (1.0f / 256);
-}
-
-/// The same by third order: the parabola through the two nearest points upwind and the nearest downwind.
-inline float thirdOrder(float m1, float a, float b, float p1, float U) {
-  const float even = 9 * (a + b) - (m1 + p1);
-  const float odd = (p1 - m1) - 3 * (b - a);
-  return (U > 0 ? even + odd : even - odd) * (1.0f / 16);
-}
 
 }  // namespace smokebox

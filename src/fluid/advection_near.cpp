@@ -1,5 +1,6 @@
 #include "fluid/advection_near.h"
 
+#include <cmath>
 #include <cstring>
 
 namespace smokebox {
@@ -15,6 +16,13 @@ constexpr std::uint8_t kRegular = 3;   // fully open, or the image of such a fac
 // Small cut cells are given at least this share of a cell's area, so that they do not limit the time step.
 constexpr float kSmallestVolume = 0.5f;
 
+// Value between a and b of (m2 m1 a | b p1 p2) by each order, first to fifth: the even weights on a + b, m1 +
+// p1, m2 + p2 less the sign of the flow times the odd weights on b - a, p1 - m1, p2 - m2.
+constexpr float kEven[3][3] = {
+    {1.0f / 2, 0, 0}, {9.0f / 16, -1.0f / 16, 0}, {150.0f / 256, -25.0f / 256, 3.0f / 256}};
+constexpr float kOdd[3][3] = {
+    {1.0f / 2, 0, 0}, {3.0f / 16, -1.0f / 16, 0}, {30.0f / 256, -15.0f / 256, 3.0f / 256}};
+
 constexpr int kReach = 4;      // of the high-order stencil along the direction of a flux
 constexpr int kMapMargin = 8;  // columns of the margin that are filled
 
@@ -28,6 +36,16 @@ void continueUse(WallKind kind, bool normal, std::uint8_t* f, std::ptrdiff_t ste
     else
       f[-k * step] = k <= 2 ? kExtended : kUnusable;
   }
+}
+
+/// U (value at the flux point - q) without a branch. p: the lower face of the flux point; own: which of p[0],
+/// p[step] is the face that has the value q.
+inline float carried(int order, const float* p, std::ptrdiff_t step, int own, float U) {
+  const float *e = kEven[order], *o = kOdd[order];
+  const float a = p[0], b = p[step], m1 = p[-step], p1 = p[2 * step], m2 = p[-2 * step], p2 = p[3 * step];
+  const float even = (e[0] * (a + b) + e[1] * (m1 + p1)) + e[2] * (m2 + p2);
+  const float odd = (o[0] * (b - a) + o[1] * (p1 - m1)) + o[2] * (p2 - m2);
+  return U * (even - p[own * step]) - std::fabs(U) * odd;
 }
 
 }  // namespace
@@ -158,6 +176,7 @@ void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
             between(i - 1, j, 1, 0, i == 0, Side::left), between(i, j, 1, 0, i == columns - 1, Side::right),
             between(i, j - 1, 0, 1, j == 0, Side::bottom), between(i, j, 0, 1, j == rows - 1, Side::top)};
       }
+      face.atSide = *std::max_element(face.order.begin(), face.order.end()) > fifth;
       c.faces.push_back(face);
     }
   }
@@ -176,21 +195,11 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const std::ptrdiff_t stride = s.u->stride();
 
-  // U (value at the flux point - q); p: the lower face of the flux point, `own`: which of p[0], p[step] is
-  // the face.
-  auto term = [](Order order, const float* p, std::ptrdiff_t step, int own, float U) {
-    const float q = p[own * step];
-    float value = q;
-    if (order == fifth) {
-      value = fifthOrder(p[-2 * step], p[-step], p[0], p[step], p[2 * step], p[3 * step], U);
-    } else if (order == third) {
-      value = thirdOrder(p[-step], p[0], p[step], p[2 * step], U);
-    } else if (order != none && (own == 1 ? U > 0 : U < 0)) {  // the flow comes from the other side
-      if (order == inward) value = thirdOrder(p[-step], p[0], p[step], p[2 * step], U);
-      if (order == first) value = p[(1 - own) * step];
-      if (order == ambient) value = 0.5f * q;
-    }
-    return U * (value - q);
+  auto carriedAtSide = [](Order order, const float* p, std::ptrdiff_t step, int own, float U) {
+    if (order <= fifth) return carried(order, p, step, own, U);
+    const bool comesIn = own == 1 ? U > 0 : U < 0;
+    if (order == none || !comesIn) return 0.0f;
+    return order == ambient ? U * (-0.5f * p[own * step]) : carried(third, p, step, own, U);
   };
   auto advanced = [&](float base, float rate, float gradient, const float* acceleration) {
     const float impulse = (acceleration ? s.accelerationScale * *acceleration : 0.0f) - s.phiScale * gradient;
@@ -199,19 +208,19 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
 
   // The whole flux through a face, that of the fluid and that of what closes it: its divergence is 0 in cut
   // cells too.
-  auto fluxU = [&](int i, int j) {
+  auto fluxU = [&](int i, int j, bool inside) {
     const float q = (*s.u)(i, j);
-    if (s.periodicX) i = i < 0 ? i + nx : i >= nx ? i - nx : i;
-    if (s.periodicY) j = j < 0 ? j + ny : j >= ny ? j - ny : j;
-    if (i < 0 || i > nx || j < 0 || j >= ny) return q;
+    if (!inside && s.periodicX) i = i < 0 ? i + nx : i >= nx ? i - nx : i;
+    if (!inside && s.periodicY) j = j < 0 ? j + ny : j >= ny ? j - ny : j;
+    if (!inside && (i < 0 || i > nx || j < 0 || j >= ny)) return q;
     const float open = boundary.openX(i, j);
     return open * q + (1 - open) * boundary.wallU(i, j);
   };
-  auto fluxV = [&](int i, int j) {
+  auto fluxV = [&](int i, int j, bool inside) {
     const float q = (*s.v)(i, j);
-    if (s.periodicX) i = i < 0 ? i + nx : i >= nx ? i - nx : i;
-    if (s.periodicY) j = j < 0 ? j + ny : j >= ny ? j - ny : j;
-    if (i < 0 || i >= nx || j < 0 || j > ny) return q;
+    if (!inside && s.periodicX) i = i < 0 ? i + nx : i >= nx ? i - nx : i;
+    if (!inside && s.periodicY) j = j < 0 ? j + ny : j >= ny ? j - ny : j;
+    if (!inside && (i < 0 || i >= nx || j < 0 || j > ny)) return q;
     const float open = boundary.openY(i, j);
     return open * q + (1 - open) * boundary.wallV(i, j);
   };
@@ -219,10 +228,13 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
     float left, right, below, above;
   };
   auto rateOf = [&](const Face& f, const float* q, Flow t) {
-    const float x = term(f.order[1], q, 1, 0, t.right) - term(f.order[0], q - 1, 1, 1, t.left);
-    const float y =
-        term(f.order[3], q, stride, 0, t.above) - term(f.order[2], q - stride, stride, 1, t.below);
-    return x + y;
+    auto sum = [&](auto&& term) {
+      const float x = term(f.order[1], q, 1, 0, t.right) - term(f.order[0], q - 1, 1, 1, t.left);
+      const float y =
+          term(f.order[3], q, stride, 0, t.above) - term(f.order[2], q - stride, stride, 1, t.below);
+      return x + y;
+    };
+    return f.atSide ? sum(carriedAtSide) : sum(carried);
   };
 
   for (int j = begin; j < std::min(end, ny); ++j)
@@ -233,9 +245,11 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
       Flow t{0.5f * (q[-1] + q[0]), 0.5f * (q[0] + q[1]), 0.5f * (v[-1] + v[0]),
              0.5f * (v[stride - 1] + v[stride])};
       if (f.cut) {
-        const float own = fluxU(i, j), half = 0.5f * f.perVolume;
-        t = {half * (fluxU(i - 1, j) + own), half * (own + fluxU(i + 1, j)),
-             half * (fluxV(i - 1, j) + fluxV(i, j)), half * (fluxV(i - 1, j + 1) + fluxV(i, j + 1))};
+        const bool inside = i > 0 && i < nx - 1 && j > 0 && j < ny - 1;
+        const float own = fluxU(i, j, inside), half = 0.5f * f.perVolume;
+        t = {half * (fluxU(i - 1, j, inside) + own), half * (own + fluxU(i + 1, j, inside)),
+             half * (fluxV(i - 1, j, inside) + fluxV(i, j, inside)),
+             half * (fluxV(i - 1, j + 1, inside) + fluxV(i, j + 1, inside))};
       }
       const float* phi = s.phi->row(j);
       const float ahead = i < nx ? phi[i] : 0.0f;
@@ -251,9 +265,11 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
       Flow t{0.5f * (u[-stride] + u[0]), 0.5f * (u[1 - stride] + u[1]), 0.5f * (q[-stride] + q[0]),
              0.5f * (q[0] + q[stride])};
       if (f.cut) {
-        const float own = fluxV(i, j), half = 0.5f * f.perVolume;
-        t = {half * (fluxU(i, j - 1) + fluxU(i, j)), half * (fluxU(i + 1, j - 1) + fluxU(i + 1, j)),
-             half * (fluxV(i, j - 1) + own), half * (own + fluxV(i, j + 1))};
+        const bool inside = i > 0 && i < nx - 1 && j > 0 && j < ny - 1;
+        const float own = fluxV(i, j, inside), half = 0.5f * f.perVolume;
+        t = {half * (fluxU(i, j - 1, inside) + fluxU(i, j, inside)),
+             half * (fluxU(i + 1, j - 1, inside) + fluxU(i + 1, j, inside)),
+             half * (fluxV(i, j - 1, inside) + own), half * (own + fluxV(i, j + 1, inside))};
       }
       const float ahead = j < ny ? (*s.phi)(i, j) : 0.0f;
       const float behind = j > 0 ? (*s.phi)(i, j - 1) : s.periodicY ? (*s.phi)(i, ny - 1) : 0.0f;

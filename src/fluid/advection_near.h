@@ -38,11 +38,12 @@ class NearFaces {
   std::size_t bytes() const;
 
  private:
-  enum Order : std::uint8_t { first, third, fifth, inward, ambient, none };
+  enum Order : std::uint8_t { first, third, fifth, inward, ambient, none };  // the last three: at sides only
   struct Face {
     int i = 0;
     float perVolume = 1;           // one over the open share of the area that the face stands for
     bool cut = false;              // the flow around it is partly that of a surface
+    bool atSide = false;           // some order is of the kind that only the domain's sides have
     std::array<Order, 4> order{};  // at the flux points before and after it along x, then along y
   };
   struct Component {

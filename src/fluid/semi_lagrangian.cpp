@@ -92,22 +92,45 @@ class Paths {
     return lastFluid(start, {start.x - scale_ * there.x, start.y - scale_ * there.y});
   }
 
-  /// The end of a straight path, or where it first meets a solid; inside the domain.
+  /// The end of a straight path, or where it first meets a shut face on its way from cell to cell (Amanatides
+  /// and Woo 1987); inside the domain.
   Point lastFluid(Point from, Point to) const {
     if (!anySolid_) return insideDomain(to);
     const float dx = to.x - from.x, dy = to.y - from.y;
-    // A path longer than both sides of the domain together tells nothing more.
-    const float length = std::fmin(std::fmax(std::fabs(dx), std::fabs(dy)), static_cast<float>(nx_ + ny_));
-    const int steps = static_cast<int>(2 * length) + 1;
-    Point last = insideDomain(from);
-    for (int k = 1; k <= steps; ++k) {
-      const float t = static_cast<float>(k) / static_cast<float>(steps);
-      const Point p = insideDomain({from.x + t * dx, from.y + t * dy});
-      const int i = std::min(static_cast<int>(p.x), nx_ - 1), j = std::min(static_cast<int>(p.y), ny_ - 1);
-      if (!(boundary_.volume(i, j) > 0)) break;
-      last = p;
+    // A start on a face belongs to the cell that the path leads into.
+    int i = cellOf(from.x, dx), j = cellOf(from.y, dy);
+    const int stepX = dx > 0 ? 1 : -1, stepY = dy > 0 ? 1 : -1;
+    // Path parameter at the next crossing of a column's or a row's border; a path longer than the domain
+    // tells no more.
+    float t = 0;
+    for (int crossings = 0; crossings < 2 * (nx_ + ny_); ++crossings) {
+      const float tx = dx != 0 ? (static_cast<float>(dx > 0 ? i + 1 : i) - from.x) / dx : 2;
+      const float ty = dy != 0 ? (static_cast<float>(dy > 0 ? j + 1 : j) - from.y) / dy : 2;
+      if (!(std::min(tx, ty) < 1)) return insideDomain(to);
+      t = std::min(tx, ty);
+      if (tx < ty) {
+        if (!passes(boundary_.openX, dx > 0 ? i + 1 : i, j, true)) break;
+        i += stepX;
+      } else {
+        if (!passes(boundary_.openY, i, dy > 0 ? j + 1 : j, false)) break;
+        j += stepY;
+      }
     }
-    return last;
+    return insideDomain({from.x + t * dx, from.y + t * dy});
+  }
+
+  static int cellOf(float x, float direction) {
+    const float cell = std::floor(x);
+    return static_cast<int>(cell) - (cell == x && direction < 0 ? 1 : 0);
+  }
+
+  /// Whether a path may cross a face; at the sides of the domain it ends, unless they are periodic.
+  bool passes(const Field& open, int i, int j, bool alongX) const {
+    if (boundary_.periodicX()) i = ((i % nx_) + nx_) % nx_;
+    if (boundary_.periodicY()) j = ((j % ny_) + ny_) % ny_;
+    const bool inside = alongX ? i > 0 - boundary_.periodicX() && i < nx_ && j >= 0 && j < ny_
+                               : j > 0 - boundary_.periodicY() && j < ny_ && i >= 0 && i < nx_;
+    return inside && open(i, j) > 0;
   }
 
   const Boundary& boundary_;
