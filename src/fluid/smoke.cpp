@@ -305,12 +305,10 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
     if (volumes.moved()) {
       s.begin(k);
       auto renew = [&](int cell) {
-        if (cell < 0) return;
         const int i = cells.i(cell), j = cells.j(cell);
         c.value(i, j) = c.mass(i, j) > 0 ? c.mass(i, j) / std::max(start(i, j), 1e-6f) : 0.0f;
       };
-      for (int cell : volumes.cut()) renew(cell);
-      for (const SmokeTransfer& t : volumes.plan().transfers()) renew(t.from), renew(t.to);
+      for (int cell : volumes.nodes()) renew(cell);
     }
     s.shareValues(c, start);
   }

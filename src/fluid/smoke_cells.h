@@ -12,6 +12,7 @@ struct SmokeCells {
   explicit SmokeCells(const Boundary& b)
       : nx(b.grid.nx), ny(b.grid.ny), periodicX(b.periodicX()), periodicY(b.periodicY()) {}
 
+  std::size_t count() const { return static_cast<std::size_t>(nx) * ny; }
   int i(int cell) const { return cell % nx; }
   int j(int cell) const { return cell / nx; }
   int cell(int i, int j) const { return j * nx + i; }

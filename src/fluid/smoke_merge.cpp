@@ -27,10 +27,10 @@ struct Flow {
 }  // namespace
 
 std::size_t CellClusters::bytes() const {
-  return (link_.capacity() + cluster_.capacity() + members_.capacity() + first_.capacity() +
-          linked_.capacity()) *
+  return (link_.capacity() + cluster_.capacity() + nodes_.capacity() + members_.capacity() +
+          first_.capacity() + linked_.capacity()) *
              sizeof(int) +
-         (rootsX_.items.capacity() + rootsY_.items.capacity()) * sizeof(ClusterRoot);
+         watched_.capacity() + (rootsX_.items.capacity() + rootsY_.items.capacity()) * sizeof(ClusterRoot);
 }
 
 int CellClusters::root(int cell) const {
@@ -103,15 +103,19 @@ void CellClusters::group() {
   }
 }
 
-int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, const Boundary& boundary,
-                        const Field& before, const Field& start, Field& courantX, Field& courantY, int parts,
-                        int mostParts) {
+int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, const std::vector<int>& nodes,
+                        const Boundary& boundary, const Field& before, const Field& start, Field& courantX,
+                        Field& courantY, int parts, int mostParts) {
   const std::size_t count = static_cast<std::size_t>(cells.nx) * cells.ny;
   if (link_.size() != count) {
     link_.assign(count, -1);
     cluster_.assign(count, -1);
   }
   clear(cells);
+  watched_.resize(count, 0);
+  for (int c : nodes_) watched_[c] = 0;
+  nodes_ = nodes;
+  for (int c : nodes_) watched_[c] = 1;
   auto volumeOf = [&](int c) { return start(cells.i(c), cells.j(c)); };
   for (int c : cut) {
     const int i = cells.i(c), j = cells.j(c);
@@ -161,6 +165,10 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
         float& flow = cells.atFace(courantX, courantY, k, face);
         if (outwards(face) * flow <= 0) continue;
         flow *= factor;
+        if (next >= 0 && !watched_[next]) {  // it gets less now
+          watched_[next] = 1;
+          nodes_.push_back(next);
+        }
         // The two copies of a periodic side's faces agree.
         const int i = cells.i(k), j = cells.j(k);
         if (cells.periodicX && face < 2 && i + (face & 1) == (face & 1 ? cells.nx : 0))
@@ -187,18 +195,19 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
     reduce(c, flow.volume > 0 ? factor : 0.0f);
     return true;
   };
-  for (int round = 0; round < kReduceRounds; ++round) {
-    bool changed = false;
-    for (int c : cut)
-      if (isNode(c)) changed |= tame(c);
+  bool changed = true;
+  for (int round = 0; round < kReduceRounds && changed; ++round) {
+    changed = false;
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+      if (isNode(nodes_[k])) changed |= tame(nodes_[k]);
     for (int k = 0; k < this->count(); ++k) changed |= tame(*begin(k));
-    if (!changed) break;
   }
+  listRoots(cells);
+  if (changed) return 0;
   float most = static_cast<float>(parts);
-  for (int c : cut)
+  for (int c : nodes_)
     if (isNode(c)) most = std::max(most, flowOf(c).parts());
   for (int k = 0; k < this->count(); ++k) most = std::max(most, flowOf(*begin(k)).parts());
-  listRoots(cells);
   return static_cast<int>(std::ceil(std::min(most, static_cast<float>(mostParts))));
 }
 

@@ -12,12 +12,13 @@ namespace smokebox {
 
 class CellClusters {
  public:
-  /// Finds the clusters of this step, and returns how many equal parts the step needs so that neither they
-  /// nor the other cut cells are overdrawn (at least `parts`). Flows that would need more than `mostParts`,
-  /// or would empty a cell, are reduced in courantX and courantY.
-  int build(const SmokeCells& cells, const std::vector<int>& cut, const Boundary& boundary,
-            const Field& before, const Field& start, Field& courantX, Field& courantY, int parts,
-            int mostParts);
+  /// Finds the clusters of this step among the cut cells, `nodes` being these and others to look after, and
+  /// returns how many equal parts the step needs so that neither they nor the other cut cells are overdrawn
+  /// (at least `parts`). Flows that would need more than `mostParts`, or would empty a cell, are reduced in
+  /// courantX and courantY.
+  int build(const SmokeCells& cells, const std::vector<int>& cut, const std::vector<int>& nodes,
+            const Boundary& boundary, const Field& before, const Field& start, Field& courantX,
+            Field& courantY, int parts, int mostParts);
   void clear(const SmokeCells& cells);
 
   int count() const { return static_cast<int>(first_.size()) - 1; }
@@ -40,7 +41,9 @@ class CellClusters {
   bool link(const SmokeCells& cells, const Boundary& boundary, const Field& start, int cell);
   void listRoots(const SmokeCells& cells);
 
-  std::vector<int> link_, cluster_;  // by cell, -1 for none
+  std::vector<int> link_, cluster_;    // by cell, -1 for none
+  std::vector<std::uint8_t> watched_;  // by cell: is in nodes_
+  std::vector<int> nodes_;             // cells to look after
   std::vector<int> members_, first_{0}, linked_, placed_;
   RowList<ClusterRoot> rootsX_, rootsY_;
 };

@@ -6,14 +6,15 @@ namespace smokebox {
 namespace {
 constexpr float kTolerance = 1e-6f;
 constexpr int kReachOfClosed = 128;  // cells looked at
-constexpr int kReachOfExcess = 24;
+constexpr int kReachOfExcess = 40;
+constexpr float kAlmostFull = 0.5f;  // open share of a cell that a thick solid is about to fill
 constexpr int kReachOfDeficit = 12;
 }  // namespace
 
 std::size_t TransferPlan::bytes() const {
   return transfers_.capacity() * sizeof(SmokeTransfer) +
          (excess_.capacity() + content_.capacity()) * sizeof(float) +
-         (seen_.capacity() + found_.capacity()) * sizeof(int);
+         (seen_.capacity() + cameFrom_.capacity() + found_.capacity()) * sizeof(int);
 }
 
 void TransferPlan::search(const SmokeCells& cells, int from, Through through, const SmokeGeometry& before,
@@ -32,6 +33,7 @@ void TransferPlan::search(const SmokeCells& cells, int from, Through through, co
       const int next = cells.neighbour(cell, face);
       if (next < 0 || seen_[next] == search_) continue;
       seen_[next] = search_;
+      cameFrom_[next] = 4 * cell + face;
       found_.push_back(next);
     }
   }
@@ -40,6 +42,7 @@ void TransferPlan::search(const SmokeCells& cells, int from, Through through, co
 
 int TransferPlan::nearestOpen(const SmokeCells& cells, const Field& volume, int from) {
   seen_.resize(static_cast<std::size_t>(cells.nx) * cells.ny, 0);
+  cameFrom_.resize(seen_.size(), 0);
   if (volume(cells.i(from), cells.j(from)) > 0) return from;
   search(cells, from, Through::all, {}, {}, kReachOfClosed);
   for (int cell : found_)
@@ -58,13 +61,31 @@ void TransferPlan::give(int from, int to, float volume, bool all) {
   excess_[to] += volume;
 }
 
+// Sends a volume along the path that the last search, which began at `from`, took to `to`.
+void TransferPlan::route(const SmokeCells& cells, int from, int to, float volume, Field& courantX,
+                         Field& courantY) {
+  excess_[from] -= volume;
+  excess_[to] += volume;
+  for (int cell = to; cell != from;) {
+    const int last = cameFrom_[cell] / 4, face = cameFrom_[cell] % 4, i = cells.i(last), j = cells.j(last);
+    float& flow = SmokeCells::atFace(courantX, courantY, i, j, face);
+    flow += outwards(face) * volume;
+    // The two copies of a periodic side's faces agree.
+    if (cells.periodicX && face == 0 && i == 0) courantX(cells.nx, j) = flow;
+    if (cells.periodicX && face == 1 && i == cells.nx - 1) courantX(0, j) = flow;
+    if (cells.periodicY && face == 2 && j == 0) courantY(i, cells.ny) = flow;
+    if (cells.periodicY && face == 3 && j == cells.ny - 1) courantY(i, 0) = flow;
+    cell = last;
+  }
+}
+
 void TransferPlan::plan(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-                        const SmokeGeometry& after, const Field& courantX, const Field& courantY,
-                        Field& start) {
+                        const SmokeGeometry& after, Field& courantX, Field& courantY, Field& start) {
   const std::size_t count = static_cast<std::size_t>(cells.nx) * cells.ny;
   excess_.resize(count, 0);
   content_.resize(count, 1);
   seen_.resize(count, 0);
+  cameFrom_.resize(count, 0);
   transfers_.clear();
   auto volumeBefore = [&](int c) { return (*before.volume)(cells.i(c), cells.j(c)); };
   auto volumeAfter = [&](int c) { return (*after.volume)(cells.i(c), cells.j(c)); };
@@ -111,36 +132,44 @@ void TransferPlan::plan(const SmokeCells& cells, const std::vector<int>& cut, co
     give(c, nearest, std::max(content_[c], 0.0f), true);
   }
 
+  // Open cells that would end with too much: correct the fluxes along the way to the nearest that lack some.
   for (int c : cut) {
     if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance) continue;
     search(cells, c, Through::after, before, after, kReachOfExcess);
     for (int other : found_) {
-      const float moved = std::min({excess_[c], -excess_[other], 0.9f * content_[c]});
+      const float moved = std::min(excess_[c], -excess_[other]);
+      if (volumeAfter(other) > 0 && moved > kTolerance) route(cells, c, other, moved, courantX, courantY);
+      if (excess_[c] <= kTolerance) break;
+    }
+  }
+  // One that the solid has almost filled and shut in may reach back through faces that were open before.
+  for (int c : cut) {
+    if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance || volumeAfter(c) > kAlmostFull) continue;
+    search(cells, c, Through::either, before, after, kReachOfExcess);
+    for (int other : found_) {
+      const float moved = std::min({excess_[c], -excess_[other], 0.99f * content_[c]});
       if (volumeAfter(other) > 0 && moved > kTolerance) give(c, other, moved, false);
       if (excess_[c] <= kTolerance) break;
     }
   }
-
-  // A cell that would end with less than half of its volume draws on its neighbours.
+  // A cell that would end with less than half of its volume draws on others.
   for (int c : cut) {
-    const float lacks = -0.5f * volumeAfter(c) - excess_[c];
-    if (volumeAfter(c) <= 0 || lacks <= 0) continue;
+    float lacks = -0.5f * volumeAfter(c) - excess_[c];
+    if (volumeAfter(c) <= 0 || lacks <= kTolerance) continue;
     search(cells, c, Through::after, before, after, kReachOfDeficit);
-    float left = lacks;
     for (int other : found_) {
-      const float spare = std::min(0.5f * content_[other], excess_[other] + 0.5f * volumeAfter(other));
-      const float moved = std::min(left, spare);
+      const float moved = std::min(lacks, excess_[other] + 0.5f * volumeAfter(other));
       if (volumeAfter(other) <= 0 || moved <= kTolerance) continue;
-      give(other, c, moved, false);
-      left -= moved;
-      if (left <= kTolerance) break;
+      route(cells, c, other, -moved, courantX, courantY);
+      lacks -= moved;
+      if (lacks <= kTolerance) break;
     }
   }
 
   // Back to a clean slate for the next step; cells off the list may have been drawn on.
   auto settle = [&](int c) {
     if (c < 0) return;
-    start(cells.i(c), cells.j(c)) = volumeAfter(c) > 0 ? content_[c] : 1.0f;
+    start(cells.i(c), cells.j(c)) = volumeAfter(c) > 0 ? std::max(content_[c], kTolerance) : 1.0f;
   };
   for (int c : cut) settle(c);
   for (const SmokeTransfer& t : transfers_) settle(t.from), settle(t.to);

@@ -26,7 +26,7 @@ class TransferPlan {
   /// `cut`: cells whose share differs from 1 before or after. `start`: open shares before, changed to what
   /// the sweeps start with. Courant numbers as in SweepJob, for the whole step.
   void plan(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-            const SmokeGeometry& after, const Field& courantX, const Field& courantY, Field& start);
+            const SmokeGeometry& after, Field& courantX, Field& courantY, Field& start);
   const std::vector<SmokeTransfer>& transfers() const { return transfers_; }
   void clear() { transfers_.clear(); }
   std::size_t bytes() const;
@@ -39,11 +39,12 @@ class TransferPlan {
   /// Cells by distance from `from`, not itself, at most `most`, into found_.
   void search(const SmokeCells& cells, int from, Through through, const SmokeGeometry& before,
               const SmokeGeometry& after, int most);
+  void route(const SmokeCells& cells, int from, int to, float volume, Field& courantX, Field& courantY);
   void give(int from, int to, float volume, bool all);
 
   std::vector<SmokeTransfer> transfers_;
-  std::vector<float> excess_, content_;  // by cell; excess is 0 outside the list
-  std::vector<int> seen_, found_;
+  std::vector<float> excess_, content_;       // by cell; excess is 0 outside the list
+  std::vector<int> seen_, found_, cameFrom_;  // cameFrom_: by cell, 4 times the cell before it, plus the face
   int search_ = 0;
 };
 

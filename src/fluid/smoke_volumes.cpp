@@ -7,11 +7,12 @@
 namespace smokebox {
 namespace {
 constexpr int kGrain = 16;
+constexpr int kMostAttempts = 6;
 constexpr int kReach = 4;          // rows and columns of margin that the sweeps read
 constexpr float kMostOut = 0.95f;  // as in smoke_merge.cpp
-constexpr float kLargest = 4096;   // cells per step; keeps infinities out
+constexpr float kLargest = 4096;   // cells per step; faster ones, infinities and NaNs count as 0
 constexpr float kLeastVolume =
-    0.1f;  // that a velocity which is not free of divergence may leave of a full cell
+    0.1f;  // of a full cell after the step; cells with less are looked after one by one
 }  // namespace
 
 void wrapMargin(Field& f, Axis axis, int nx, int ny, bool faces) {
@@ -40,14 +41,16 @@ SmokeVolumes::SmokeVolumes(const Boundary& b)
       start_(cells_.nx, cells_.ny, 1),
       openXBefore_(b.openX),
       openYBefore_(b.openY),
-      volumeBefore_(b.volume) {
+      volumeBefore_(b.volume),
+      drained_(cells_.ny, 0) {
   version_ = b.version;
   for (int j = 0; j < cells_.ny; ++j)
     for (int i = 0; i < cells_.nx; ++i) start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
 }
 
 std::size_t SmokeVolumes::bytes() const {
-  std::size_t sum = cut_.capacity() * sizeof(int) + plan_.bytes() + clusters_.bytes() + irregular_.bytes();
+  std::size_t sum = (cut_.capacity() + nodes_.capacity()) * sizeof(int) + listed_.capacity() + plan_.bytes() +
+                    clusters_.bytes() + irregular_.bytes();
   for (const Field* f :
        {&courantX_, &courantY_, &start_, &measure_, &openXBefore_, &openYBefore_, &volumeBefore_})
     if (!f->empty()) sum += f->bytes();
@@ -60,7 +63,10 @@ float SmokeVolumes::flows(const Boundary& b, const Field& u, const Field& v, dou
   const float s = static_cast<float>(dt / b.grid.h);
   auto flow = [s](int n, const float* open, const float* speed, float* c) {
 #pragma omp simd
-    for (int i = 0; i < n; ++i) c[i] = std::min(std::max(open[i] * speed[i] * s, -kLargest), kLargest);
+    for (int i = 0; i < n; ++i) {
+      const float x = open[i] * speed[i] * s;
+      c[i] = std::fabs(x) <= kLargest ? x : 0.0f;
+    }
   };
   // An inflow drives fluid through a closed face.
   auto driven = [s](float open, float speed, float wall) { return (open * speed + (1 - open) * wall) * s; };
@@ -88,8 +94,8 @@ float SmokeVolumes::flows(const Boundary& b, const Field& u, const Field& v, dou
       const float *x = courantX_.row(j), *low = courantY_.row(j), *high = courantY_.row(j + 1),
                   *vol = start_.row(j);
       const float* after = b.volume.row(j);
-      float lanes[16] = {};
-      auto cell = [&](int i, float& lane) {
+      float lanes[16] = {}, nets[16] = {};
+      auto cell = [&](int i, float& lane, float& net) {
         const float netX = x[i + 1] - x[i], netY = high[i] - low[i];
         const float outX = std::max(x[i + 1], 0.0f) - std::min(x[i], 0.0f);
         const float outY = std::max(high[i], 0.0f) - std::min(low[i], 0.0f);
@@ -99,13 +105,16 @@ float SmokeVolumes::flows(const Boundary& b, const Field& u, const Field& v, dou
                            least;
         const bool full = vol[i] == 1 && after[i] == 1;
         lane = std::max(lane, full ? need : 0.0f);
+        net = std::max(net, full ? netX + netY : 0.0f);
       };
       int i = 0;
       for (; i + 16 <= nx; i += 16)
 #pragma omp simd
-        for (int k = 0; k < 16; ++k) cell(i + k, lanes[k]);
-      for (; i < nx; ++i) cell(i, lanes[0]);
+        for (int k = 0; k < 16; ++k) cell(i + k, lanes[k], nets[k]);
+      for (; i < nx; ++i) cell(i, lanes[0], nets[0]);
       for (float lane : lanes) most = std::max(most, lane);
+      drained_[j] = 0;
+      for (float net : nets) drained_[j] = std::max(drained_[j], net);
     }
     return static_cast<double>(most);
   });
@@ -121,6 +130,27 @@ void SmokeVolumes::scale(float factor, ThreadPool& pool) {
         for (int i = 0; i <= cells_.nx; ++i) x[i] *= factor;
     }
   });
+}
+
+void SmokeVolumes::listNodes() {
+  nodes_ = cut_;
+  bool drained = false;
+  for (int j = 0; j < cells_.ny; ++j) drained |= drained_[j] > 1 - kLeastVolume;
+  if (plan_.transfers().empty() && !drained) return;
+  listed_.resize(cells_.count(), 0);
+  for (int c : cut_) listed_[c] = 1;
+  auto add = [&](int c) {
+    if (c < 0 || listed_[c]) return;
+    listed_[c] = 1;
+    nodes_.push_back(c);
+  };
+  for (const SmokeTransfer& t : plan_.transfers()) add(t.from), add(t.to);
+  // A velocity that is far from free of divergence would empty a cell.
+  for (int j = 0; j < cells_.ny; ++j)
+    for (int i = 0; drained_[j] > 1 - kLeastVolume && i < cells_.nx; ++i)
+      if (courantX_(i + 1, j) - courantX_(i, j) + courantY_(i, j + 1) - courantY_(i, j) > 1 - kLeastVolume)
+        add(cells_.cell(i, j));
+  for (int c : nodes_) listed_[c] = 0;
 }
 
 void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, double dt, ThreadPool& pool) {
@@ -143,12 +173,19 @@ void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, do
   if (moved_)
     plan_.plan(cells_, cut_, {&openXBefore_, &openYBefore_, &volumeBefore_}, {&b.openX, &b.openY, &b.volume},
                courantX_, courantY_, start_);
-  if (!cut_.empty()) {
-    parts_ =
-        clusters_.build(cells_, cut_, b, volumeBefore_, start_, courantX_, courantY_, parts_, kMostParts);
+  listNodes();
+  if (!nodes_.empty()) {
+    // Where the flows cannot be made safe one by one (a velocity that is no solution), all are slowed down.
+    const int needed = parts_;
+    for (int attempt = 0;; ++attempt) {
+      parts_ = clusters_.build(cells_, cut_, nodes_, b, volumeBefore_, start_, courantX_, courantY_, needed,
+                               kMostParts);
+      if (parts_ > 0) break;
+      scale(attempt < kMostAttempts ? 0.25f : 0.0f, pool);
+    }
     irregular_.choose(cells_, b, clusters_);
     if (measure_.empty()) measure_ = Field(cells_.nx, cells_.ny, 1);
-    for (int c : cut_) measure_(cells_.i(c), cells_.j(c)) = b.volume(cells_.i(c), cells_.j(c));
+    for (int c : nodes_) measure_(cells_.i(c), cells_.j(c)) = b.volume(cells_.i(c), cells_.j(c));
     for (int k = 0; k < clusters_.count(); ++k)
       for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m)
         measure_(cells_.i(*m), cells_.j(*m)) = 0;
@@ -168,8 +205,7 @@ void SmokeVolumes::finish(const Boundary& b) {
     start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
     if (!measure_.empty()) measure_(i, j) = b.volume(i, j);
   };
-  for (int c : cut_) settle(c);
-  for (const SmokeTransfer& t : plan_.transfers()) settle(t.from), settle(t.to);
+  for (int c : nodes_) settle(c);
   for (int k = 0; k < clusters_.count(); ++k)
     for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) settle(*m);
   if (moved_) {

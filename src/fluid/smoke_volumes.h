@@ -32,12 +32,13 @@ class SmokeVolumes {
   /// Open shares to start with; 1 where a cell stays closed.
   Field& start() { return start_; }
   /// Open shares at the end; 0 in clusters, whose values are found apart.
-  const Field& measure(const Boundary& boundary) const { return cut_.empty() ? boundary.volume : measure_; }
+  const Field& measure(const Boundary& boundary) const { return nodes_.empty() ? boundary.volume : measure_; }
   /// next = volume after a sweep that starts with `volume`.
   void advance(Axis axis, const Field& volume, Field& next, ThreadPool& pool) const;
 
   bool moved() const { return moved_; }
-  const std::vector<int>& cut() const { return cut_; }
+  /// Cells that are cut before or after, and those that a transfer touches.
+  const std::vector<int>& nodes() const { return nodes_; }
   TransferPlan& plan() { return plan_; }
   const CellClusters& clusters() const { return clusters_; }
   const IrregularFaces& irregular() const { return irregular_; }
@@ -46,14 +47,17 @@ class SmokeVolumes {
  private:
   float flows(const Boundary& boundary, const Field& u, const Field& v, double dt, ThreadPool& pool);
   void scale(float factor, ThreadPool& pool);
+  void listNodes();
 
   SmokeCells cells_;
   Field courantX_, courantY_, start_, measure_;
   Field openXBefore_, openYBefore_, volumeBefore_;
-  std::vector<int> cut_;
+  std::vector<int> cut_, nodes_;
+  std::vector<std::uint8_t> listed_;  // by cell: is in nodes_; for moving solids only
   TransferPlan plan_;
   CellClusters clusters_;
   IrregularFaces irregular_;
+  std::vector<float> drained_;  // by row, largest net outflow from a full cell
   std::uint64_t version_ = 0;
   bool moved_ = false, stale_ = true;
   int parts_ = 1;

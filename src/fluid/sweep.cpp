@@ -15,6 +15,7 @@ constexpr int kPad = 32;
 constexpr float kTiny = 1e-30f;
 // Fluxes out of cells with less than this many quanta are rounded towards zero, so that none is overdrawn.
 constexpr float kRoundingFloor = 1024;
+constexpr float kClusterSlack = 8;  // clusters have more faces at which fluxes are rounded
 
 // The donor flux through faces [0, n) and what the reconstruction adds to it. Pointers are to the first face;
 // `d` is the distance between a face's high cell and its low cell.
@@ -159,7 +160,7 @@ void patchLimits(const SweepJob& job, int j, int first, int last, const float* e
   for (; root != end && root->i < last; ++root) {
     const int k = root->i - first;
     clusterLimits(job.clusterMass[root->cluster], job.clusterVolume[root->cluster], extraLow[k], extraHigh[k],
-                  job.highest, slack, in[k], out[k]);
+                  job.highest, kClusterSlack * slack, in[k], out[k]);
   }
 }
 
