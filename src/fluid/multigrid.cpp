@@ -110,26 +110,24 @@ void Multigrid::listSealed() {
   balanced_ = 0;
   while (static_cast<long>(levels_[balanced_].nx) * levels_[balanced_].ny > kFewCells) ++balanced_;
 
-  // At the coarsest level a region is one unknown, and it is sealed if that has no link.
+  // On some coarser level a sealed region is one unknown without a link; that is where its label comes from.
+  // A region with an open side keeps a link up to the coarsest level.
   labels_.resize(levels_.size());
-  const Level& top = levels_.back();
-  std::vector<int>& last = labels_.back();
-  last.assign(top.x.size(), -1);
   int regions = 0;
-  if (top.id[top.at(0, 0)] == 0) last[top.at(0, 0)] = regions++;
-  for (std::size_t s = 0; s < top.specialAt.size(); ++s)
-    last[top.specialAt[s]] = top.specialInverse[s] > 0 ? -1 : regions++;
-  for (std::size_t l = levels_.size() - 1; l-- > balanced_;) {
+  for (std::size_t l = levels_.size(); l-- > balanced_;) {
     const Level& level = levels_[l];
     labels_[l].assign(level.x.size(), -1);
-    const auto inherit = [&](int at) {
-      labels_[l][at] = labels_[l + 1][parentOf(level, levels_[l + 1], at)];
+    const auto label = [&](int at, bool linked) {
+      if (!linked)
+        labels_[l][at] = regions++;
+      else if (l + 1 < levels_.size())
+        labels_[l][at] = labels_[l + 1][parentOf(level, levels_[l + 1], at)];
     };
     for (int j = 0; j < level.ny; ++j)
       for (int i = 0; i < level.nx; ++i)
-        if (level.id[level.at(i, j)] != 0) inherit(static_cast<int>(level.at(i, j)));
+        label(static_cast<int>(level.at(i, j)), level.id[level.at(i, j)] != 0);
     for (std::size_t s = 0; s < level.specialAt.size(); ++s)
-      if (level.specialAt[s] >= level.extrasBegin && level.specialInverse[s] > 0) inherit(level.specialAt[s]);
+      if (level.specialAt[s] >= level.extrasBegin) label(level.specialAt[s], level.specialInverse[s] > 0);
   }
   const std::vector<int>& label = labels_[balanced_];
   sealedBegin_.assign(regions + 1, 0);

@@ -204,6 +204,18 @@ TEST(PressureSolver, KeepsToItsIterationsBesideThinWalls) {
   }
 }
 
+TEST(PressureSolver, StandsManySealedRegions) {
+  // Two hundred solids enclose dozens of regions of every size; rounding in one does not hold up the others.
+  const Boundary b = boxWithSolids(512, 512, 200);
+  Field u, v;
+  stir(b, u, v);
+  for (double tolerance : {1e-5, 1e-7}) {
+    const Outcome o = projectOn(1, b, u, v, tolerance);
+    EXPECT_TRUE(o.result.converged);
+    EXPECT_LE(o.result.iterations, tolerance > 1e-6 ? 20 : 28);
+  }
+}
+
 TEST(PressureSolver, NeedsFewIterationsFromAWarmStart) {
   // After a small change of the velocity a few iterations are enough.
   const Boundary b = boxWithSolids(256, 144, 40);
