@@ -43,6 +43,10 @@ struct WrongUsage {
   const char* says;
 };
 
+void PrintTo(const WrongUsage& wrong, std::ostream* out) {
+  for (const std::string& argument : wrong.arguments) *out << argument << " ";
+}
+
 class UsageError : public testing::TestWithParam<WrongUsage> {};
 
 TEST_P(UsageError, HasStatusTwoAndSaysWhy) {
@@ -58,7 +62,7 @@ TEST_P(UsageError, HasStatusTwoAndSaysWhy) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cli, UsageError,
-    testing::Values(WrongUsage{{"render"}, "SCENE"}, WrongUsage{{"check"}, "SCENE"},
+    testing::Values(WrongUsage{{"render"}, "scene is required"}, WrongUsage{{"check"}, "scene is required"},
                     WrongUsage{{"render", "scene.yaml", "--sise", "64x32"}, "--sise"},
                     WrongUsage{{"render", "scene.yaml", "--threads", "0", "-o", "a.mp4"}, "--threads"},
                     WrongUsage{{"render", "scene.yaml", "--threads", "two", "-o", "a.mp4"}, "--threads"},
