@@ -27,7 +27,7 @@ struct Advection::Impl {
         v1(boundary.grid.nx, boundary.grid.ny),
         u2(boundary.grid.nx, boundary.grid.ny),
         v2(boundary.grid.nx, boundary.grid.ny) {
-    near.rebuild(boundary, extension);
+    near.rebuild(boundary, extension, pool);
   }
 
   void stage(const Boundary& boundary, const AdvectionStage& s) {
@@ -121,7 +121,7 @@ Advection::~Advection() = default;
 
 void Advection::rebuild(const Boundary& boundary) {
   impl_->extension.rebuild(boundary);
-  impl_->near.rebuild(boundary, impl_->extension);
+  impl_->near.rebuild(boundary, impl_->extension, impl_->pool);
 }
 
 Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& v, const Field& phi,

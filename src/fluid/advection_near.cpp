@@ -56,14 +56,16 @@ NearFaces::NearFaces(const Boundary& boundary) {
   v_.use = FaceMap(nx, ny);
   u_.rowBegin.assign(ny + 2, 0);
   v_.rowBegin.assign(ny + 2, 0);
-  irregular_.assign(nx + 1, 0);
+  // Padded, so that it can be looked through eight at a time.
+  u_.irregular.assign(nx + 1 + 8, 0);
+  v_.irregular.assign(nx + 1 + 8, 0);
 }
 
-void NearFaces::rebuild(const Boundary& boundary, const VelocityExtension& extension) {
-  findUse(boundary, extension, true, u_.use);
-  findUse(boundary, extension, false, v_.use);
-  findFaces(boundary, true);
-  findFaces(boundary, false);
+void NearFaces::rebuild(const Boundary& boundary, const VelocityExtension& extension, ThreadPool& pool) {
+  pool.blocks(0, 2, 1, [&](int begin, int) {
+    findUse(boundary, extension, begin == 0, begin == 0 ? u_.use : v_.use);
+  });
+  pool.blocks(0, 2, 1, [&](int begin, int) { findFaces(boundary, begin == 0); });
 }
 
 void NearFaces::findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX,
@@ -80,8 +82,9 @@ void NearFaces::findUse(const Boundary& boundary, const VelocityExtension& exten
     const float* o = open.row(j);
     const std::uint8_t* depth = layer.row(j);
     for (int i = 0; i < columns; ++i) {
-      const std::uint8_t closed = depth[i] == 2 || depth[i] == 3 ? kExtended : kUnusable;
-      row[i] = o[i] >= 1 ? kRegular : o[i] > 0 ? kKnown : closed;
+      const int regular = o[i] >= 1 ? kRegular : 0, known = (o[i] > 0 && o[i] < 1) ? kKnown : 0;
+      const int extended = (depth[i] == 2 || depth[i] == 3) ? kExtended : 0;
+      row[i] = static_cast<std::uint8_t>(regular | known | extended);
     }
     if (alongX && !wrapX) {
       if (!(o[0] > 0)) row[0] = planeUse(boundary.side(Side::left).kind);
@@ -132,7 +135,7 @@ void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
   for (int j = 0; j <= ny + 1; ++j) {
     c.rowBegin[j] = static_cast<int>(c.faces.size());
     if (j >= rows) continue;
-    std::uint8_t* irregular = irregular_.data();
+    std::uint8_t* irregular = c.irregular.data();
     std::memset(irregular, 0, static_cast<std::size_t>(columns));
     auto mark = [&](const std::uint8_t* use) {
       for (int i = 0; i < columns; ++i) irregular[i] |= static_cast<std::uint8_t>(use[i] ^ kRegular);
@@ -146,6 +149,12 @@ void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
 
     const float* o = open.row(j);
     for (int i = 0; i < columns; ++i) {
+      std::uint64_t eight = 0;
+      std::memcpy(&eight, irregular + i, sizeof eight);
+      if (eight == 0) {
+        i += 7;
+        continue;
+      }
       if (!irregular[i] || !(o[i] > 0)) continue;
       Face face;
       face.i = i;
@@ -279,7 +288,7 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
 }
 
 std::size_t NearFaces::bytes() const {
-  std::size_t total = irregular_.capacity();
+  std::size_t total = u_.irregular.capacity() + v_.irregular.capacity();
   for (const Component* c : {&u_, &v_})
     total += c->faces.capacity() * sizeof(Face) + c->rowBegin.capacity() * sizeof(int) + c->use.bytes();
   return total;

@@ -29,7 +29,7 @@ class NearFaces {
  public:
   explicit NearFaces(const Boundary& boundary);
 
-  void rebuild(const Boundary& boundary, const VelocityExtension& extension);
+  void rebuild(const Boundary& boundary, const VelocityExtension& extension, ThreadPool& pool);
 
   /// Overwrites what the whole-row kernel wrote on near faces of rows [begin, end); row ny is v's last.
   void advanceRows(const Boundary& boundary, const AdvectionStage& stage, int begin, int end) const;
@@ -48,8 +48,9 @@ class NearFaces {
   };
   struct Component {
     std::vector<Face> faces;
-    std::vector<int> rowBegin;  // faces of row j: [rowBegin[j], rowBegin[j + 1])
-    FaceMap use;                // what a stencil may do with a face's value, see the .cpp
+    std::vector<int> rowBegin;            // faces of row j: [rowBegin[j], rowBegin[j + 1])
+    FaceMap use;                          // what a stencil may do with a face's value, see the .cpp
+    std::vector<std::uint8_t> irregular;  // scratch of one row
   };
 
   void findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX, FaceMap& use) const;
@@ -57,7 +58,6 @@ class NearFaces {
   Order orderBetween(const FaceMap& use, int i, int j, int di, int dj, bool atWall) const;
 
   Component u_, v_;
-  std::vector<std::uint8_t> irregular_;  // scratch of one row
 };
 
 }  // namespace smokebox

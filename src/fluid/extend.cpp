@@ -104,9 +104,7 @@ VelocityExtension::VelocityExtension(const Boundary& boundary, ThreadPool& pool)
 }
 
 void VelocityExtension::rebuild(const Boundary& boundary) {
-  anySolid_ = false;
-  rebuild(boundary, u_);
-  rebuild(boundary, v_);
+  pool_.blocks(0, 2, 1, [&](int begin, int) { rebuild(boundary, begin == 0 ? u_ : v_); });
 }
 
 void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
@@ -128,6 +126,7 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
     return c.alongX ? !wrapX && (i == 0 || i == nx) : !wrapY && (j == 0 || j == ny);
   };
 
+  c.anySolid = false;
   c.spans.clear();
   for (int j = 0; j < rows; ++j) {
     const float* o = open.row(j);
@@ -137,7 +136,9 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
       const void* zero = std::memchr(layer + i, 0, static_cast<std::size_t>(columns - i));
       if (!zero) break;
       const int begin = static_cast<int>(static_cast<const std::uint8_t*>(zero) - layer);
-      for (i = begin; i < columns && layer[i] == 0; ++i) anySolid_ = anySolid_ || !onWall(i, j);
+      const void* one = std::memchr(layer + begin, 1, static_cast<std::size_t>(columns - begin));
+      i = one ? static_cast<int>(static_cast<const std::uint8_t*>(one) - layer) : columns;
+      c.anySolid = c.anySolid || !onWall(begin, j) || !onWall(i - 1, j) || (c.alongX && i - begin > 2);
       c.spans.push_back({j, begin, i});
     }
   }
@@ -151,16 +152,21 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
   c.front.clear();
   c.ghosts.clear();
   c.layerEnds.clear();
-  for (const Span& span : c.spans)
+  for (const Span& span : c.spans) {
+    // Only the ends of a span can have an open neighbour along the row.
+    auto rowBeside = [&](int step) -> const std::uint8_t* {
+      int i = 0, j = span.j + step;
+      return inside(i, j) ? c.layer.row(j) : nullptr;
+    };
+    const std::uint8_t *above = rowBeside(1), *below = rowBeside(-1);
+    auto openAt = [&](int i, int j) { return inside(i, j) && c.layer(i, j) == 1; };
     for (int i = span.begin; i < span.end; ++i) {
-      if (onWall(i, span.j)) continue;
-      bool beside = false;
-      for (const auto& step : kStep) {
-        int a = i + step[0], b = span.j + step[1];
-        beside = beside || (inside(a, b) && open(a, b) > 0);
-      }
-      if (beside) c.front.push_back({i, span.j});
+      const bool beside = (above && above[i] == 1) || (below && below[i] == 1) ||
+                          (i == span.begin && openAt(i - 1, span.j)) ||
+                          (i == span.end - 1 && openAt(i + 1, span.j));
+      if (beside && !onWall(i, span.j)) c.front.push_back({i, span.j});
     }
+  }
   for (int depth = 1; depth <= kLayers && !c.front.empty(); ++depth) {
     for (const Vec2i at : c.front) {
       Ghost ghost;

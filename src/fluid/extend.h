@@ -39,7 +39,7 @@ class VelocityExtension {
   const FaceMap& layerU() const { return u_.layer; }
   const FaceMap& layerV() const { return v_.layer; }
   /// Whether any cell is shut (solids, as opposed to the domain's walls).
-  bool anySolid() const { return anySolid_; }
+  bool anySolid() const { return u_.anySolid || v_.anySolid; }
 
   std::size_t bytes() const;
 
@@ -53,6 +53,7 @@ class VelocityExtension {
   };
   struct Component {
     bool alongX = true;  // u: the component along x
+    bool anySolid = false;
     FaceMap layer;
     Field drag;  // of the link that ends on a closed face; 0 elsewhere
     std::vector<Span> spans;
@@ -66,7 +67,6 @@ class VelocityExtension {
 
   ThreadPool& pool_;
   Component u_, v_;
-  bool anySolid_ = false;
 };
 
 /// Fills the margins of u and v beyond the domain's sides; the faces on the walls must hold the wall's
