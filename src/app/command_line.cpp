@@ -126,6 +126,10 @@ Command parseCommandLine(int argc, const char* const* argv) {
     return ShowText{app.help()};
   } catch (const CLI::CallForVersion&) {
     return ShowText{"smokebox " + programVersion() + "\n"};
+  } catch (const CLI::ExtrasError&) {  // its own message has them backwards
+    std::string words;
+    for (const std::string& word : app.remaining(true)) words += " " + word;
+    throw UsageError("not expected:" + words + "; see smokebox " + argv[1] + " --help");
   } catch (const CLI::ParseError& error) {
     const auto commands = app.get_subcommands();
     throw UsageError(std::string(error.what()) + "; see smokebox " +

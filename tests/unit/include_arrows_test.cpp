@@ -99,13 +99,19 @@ TEST(IncludeArrows, EachLibraryIsUsedInOneFolder) {
 }
 
 TEST(IncludeArrows, HaveNoCycle) {
-  // The table itself is sound: what a folder may include never leads back to it.
-  for (const auto& [folder, targets] : kArrows)
-    for (const std::string& target : targets) {
-      ASSERT_TRUE(kArrows.contains(target)) << target;
-      EXPECT_FALSE(kArrows.at(target).contains(folder)) << folder << " and " << target;
-      for (const std::string& further : kArrows.at(target)) EXPECT_TRUE(targets.contains(further)) << folder;
+  // The table itself is sound: taking away again and again the folders that include no other leaves none.
+  std::map<std::string, std::set<std::string>> left = kArrows;
+  for (bool taken = true; taken;) {
+    taken = false;
+    for (auto folder = left.begin(); folder != left.end(); ++folder) {
+      if (!folder->second.empty()) continue;
+      for (auto& [other, targets] : left) targets.erase(folder->first);
+      left.erase(folder);
+      taken = true;
+      break;
     }
+  }
+  for (const auto& [folder, targets] : left) ADD_FAILURE() << folder << " is in a cycle";
 }
 
 }  // namespace
