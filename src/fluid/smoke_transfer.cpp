@@ -6,7 +6,7 @@ namespace smokebox {
 namespace {
 constexpr float kTolerance = 1e-6f;
 constexpr int kReachOfClosed = 128;  // cells looked at
-constexpr int kReachOfExcess = 40;
+constexpr int kReachOfExcess = 40, kFarReach = 800;
 constexpr float kAlmostFull = 0.5f;  // open share of a cell that a thick solid is about to fill
 constexpr int kReachOfDeficit = 12;
 }  // namespace
@@ -133,15 +133,16 @@ void TransferPlan::plan(const SmokeCells& cells, const std::vector<int>& cut, co
   }
 
   // Open cells that would end with too much: correct the fluxes along the way to the nearest that lack some.
-  for (int c : cut) {
-    if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance) continue;
-    search(cells, c, Through::after, before, after, kReachOfExcess);
-    for (int other : found_) {
-      const float moved = std::min(excess_[c], -excess_[other]);
-      if (volumeAfter(other) > 0 && moved > kTolerance) route(cells, c, other, moved, courantX, courantY);
-      if (excess_[c] <= kTolerance) break;
+  for (const int reach : {kReachOfExcess, kFarReach})
+    for (int c : cut) {
+      if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance) continue;
+      search(cells, c, Through::after, before, after, reach);
+      for (int other : found_) {
+        const float moved = std::min(excess_[c], -excess_[other]);
+        if (volumeAfter(other) > 0 && moved > kTolerance) route(cells, c, other, moved, courantX, courantY);
+        if (excess_[c] <= kTolerance) break;
+      }
     }
-  }
   // One that the solid has almost filled and shut in may reach back through faces that were open before.
   for (int c : cut) {
     if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance || volumeAfter(c) > kAlmostFull) continue;

@@ -1,6 +1,7 @@
 #include "fluid/smoke_volumes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -94,8 +95,10 @@ float SmokeVolumes::flows(const Boundary& b, const Field& u, const Field& v, dou
       const float *x = courantX_.row(j), *low = courantY_.row(j), *high = courantY_.row(j + 1),
                   *vol = start_.row(j);
       const float* after = b.volume.row(j);
-      float lanes[16] = {}, nets[16] = {};
-      auto cell = [&](int i, float& lane, float& net) {
+      // Non-negative floats are ordered as their bits are, and integers reduce in vectors.
+      std::int32_t needs = 0, nets = 0;
+#pragma omp simd reduction(max : needs, nets)
+      for (int i = 0; i < nx; ++i) {
         const float netX = x[i + 1] - x[i], netY = high[i] - low[i];
         const float outX = std::max(x[i + 1], 0.0f) - std::min(x[i], 0.0f);
         const float outY = std::max(high[i], 0.0f) - std::min(low[i], 0.0f);
@@ -104,17 +107,11 @@ float SmokeVolumes::flows(const Boundary& b, const Field& u, const Field& v, dou
                                     outY * (1 / kMostOut) + std::max(netX, 0.0f)) /
                            least;
         const bool full = vol[i] == 1 && after[i] == 1;
-        lane = std::max(lane, full ? need : 0.0f);
-        net = std::max(net, full ? netX + netY : 0.0f);
-      };
-      int i = 0;
-      for (; i + 16 <= nx; i += 16)
-#pragma omp simd
-        for (int k = 0; k < 16; ++k) cell(i + k, lanes[k], nets[k]);
-      for (; i < nx; ++i) cell(i, lanes[0], nets[0]);
-      for (float lane : lanes) most = std::max(most, lane);
-      drained_[j] = 0;
-      for (float net : nets) drained_[j] = std::max(drained_[j], net);
+        needs = std::max(needs, std::bit_cast<std::int32_t>(full ? need : 0.0f));
+        nets = std::max(nets, std::bit_cast<std::int32_t>(full ? std::max(netX + netY, 0.0f) : 0.0f));
+      }
+      most = std::max(most, std::bit_cast<float>(needs));
+      drained_[j] = std::bit_cast<float>(nets);
     }
     return static_cast<double>(most);
   });
