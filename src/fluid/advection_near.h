@@ -4,16 +4,16 @@
 // flux form where the plain averages U are divergence-free, exactly 0 in a uniform flow beside a solid (where
 // only the share-weighted fluxes are), and without a limit from small cut cells. Each point takes the highest
 // order its neighbours allow:
-//   fifth   six faces away from any wall
-//   third   four faces of which the inner two are open and the outer two at least extended
-//   inward  a tangential component at the domain's wall: third order through the wall's velocity if the flow
-//   comes in,
-//           the face's own value if it goes out
-//   first   upwind
-//   ambient a normal component at an open side: what comes in was at rest far away, so half of its speed is
-//   lost (the
-//           head u^2/2 of Bernoulli); without that, vortices that leave feed energy back and grow
-//   none    a tangential component at an open side: no gradient across it
+//   fifth    six faces away from any wall
+//   third    four faces of which the inner two are open and the outer two at least extended
+//   first    upwind
+//   inward   a tangential component at the domain's wall: third order through the wall's velocity where the
+//            flow comes in, the face's own value where it goes out
+//   ambient  a normal component at an open side: what comes in was at rest far away, so half of its speed is
+//            lost (Bernoulli's head u^2/2); without that, vortices that leave feed energy back and grow
+//   none     a tangential component at an open side: no gradient across it
+// Beside a surface the flow is the whole flux through a face, the fluid's and the surface's, whose divergence
+// is 0 in cut cells too, over the open area (no less than half a cell's).
 #pragma once
 #include <array>
 #include <cstdint>
