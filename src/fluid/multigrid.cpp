@@ -33,8 +33,6 @@ void sweepUp(Level& level, int s, int j) {
     multigrid::sweepRow<true>(level, j, mirrored & 1);
 }
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"
 double dotOfRow(const Level& level, int j) {
   const float* x = level.row(level.x, j);
   const float* b = level.row(level.b, j);
@@ -43,7 +41,6 @@ double dotOfRow(const Level& level, int j) {
     sum += multigrid::load(x + i) * multigrid::load(b + i);
   return multigrid::sumOfLanes(sum);
 }
-#pragma GCC diagnostic pop
 
 }  // namespace
 

@@ -8,27 +8,7 @@
 
 namespace smokebox::multigrid {
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace {
-
-constexpr float kSlack = 1e-4f, kAnything = 1e9f;
-
-inline bool allLanes(const LaneMask& m) {
-  typedef long long Longs __attribute__((vector_size(64), aligned(4), may_alias));
-  const Longs& l = reinterpret_cast<const Longs&>(m);
-  long long all = l[0];
-  for (int k = 1; k < 8; ++k) all &= l[k];
-  return all == -1;
-}
-
-inline unsigned bitsOf(const LaneMask& m) {
-  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-  const LaneMask bits = m & place;
-  int sum = 0;
-  for (int k = 0; k < kLanes; ++k) sum |= bits[k];
-  return static_cast<unsigned>(sum);
-}
 
 /// A bit for each block of chunk `c` that is inside the grid.
 unsigned columnsOf(const Level& level, int c) { return (1u << std::min(kLanes, level.nx - c * kLanes)) - 1; }
@@ -157,7 +137,7 @@ unsigned Builder::suspects(const Level& fine, const Level& coarse, int C, int J)
   const int i = 2 * C * kLanes, j = 2 * J;
   const Lanes zero = {};
   const LaneMask none = {};
-  const auto of = [&](const Floats& f, int row, const LaneMask& which) {
+  const auto of = [&](const Floats& f, int row, const LaneMask& which) __attribute__((always_inline)) {
     const float* p = fine.row(f, row) + i;
     return __builtin_shuffle(load(p), pair ? load(p + kLanes) : zero, which);
   };
@@ -538,86 +518,6 @@ void Builder::listSpecials(Level& level) {
     if (at >= level.extrasBegin) labels_[at - level.extrasBegin] = slot_[at];
     slot_[at] = -1;
   }
-}
-
-// Inverse diagonal, kind of each chunk, and the band along solids.
-void Builder::classify(Level& level) {
-  disturbed_.assign(level.chunk.size(), 0);
-  for (int j = 0; j < level.ny; ++j) {
-    const float* ax = level.row(level.ax, j);
-    const float* ay = level.row(level.ay, j);
-    const float* ayAbove = ay + level.stride;
-    float* id = level.row(level.id, j);
-    const float high = level.high[j], nearBelow = level.nearY[j], nearAbove = level.nearY[j + 1];
-    const float slackBelow = j > 0 ? kSlack : kAnything, slackAbove = j + 1 < level.ny ? kSlack : kAnything;
-    for (int c = 0; c < level.chunks; ++c) {
-      const int i = c * kLanes, k = j * level.chunks + c;
-      const Lanes left = load(ax + i), right = load(ax + i + 1), below = load(ay + i),
-                  above = load(ayAbove + i);
-      const bool whole = i + kLanes <= level.nx;
-      if (whole && allLanes((left == 1.0f) & (right == 1.0f) & (below == 1.0f) & (above == 1.0f))) {
-        level.chunk[k] = kRegular;
-        std::fill(id + i, id + i + kLanes, 0.25f);
-        continue;
-      }
-      Lanes diagonal = (left + right) + (below + above);
-      if (!whole)
-        for (int q = level.nx - i; q < kLanes; ++q) diagonal[q] = 0;
-      const LaneMask used = diagonal > 0.0f;
-      const Lanes zero = {}, one = zero + 1.0f;
-      store(id + i, used ? one / (used ? diagonal : one) : zero);
-      // Compared with what the links would be without solids; sides of the domain do not count.
-      const Lanes wide = load(level.wide.data() + i);
-      const auto off = [](const Lanes& weight, const Lanes& nominal, const Lanes& slack) {
-        return magnitude(weight - nominal) > slack;
-      };
-      const LaneMask beside =
-          off(left, high * load(level.nearX.data() + i), load(level.slackX.data() + i)) |
-          off(right, high * load(level.nearX.data() + i + 1), load(level.slackX.data() + i + 1)) |
-          off(below, wide * nearBelow, zero + slackBelow) | off(above, wide * nearAbove, zero + slackAbove);
-      level.chunk[k] = bitsOf(used) ? kGeneral : kEmpty;
-      disturbed_[k] = static_cast<std::uint16_t>(bitsOf(beside));
-    }
-  }
-  for (int s = 0; s < static_cast<int>(level.specialAt.size()); ++s) {
-    const int i = level.specialCell[s] % level.nx, j = level.specialCell[s] / level.nx;
-    const int k = j * level.chunks + i / kLanes;
-    level.chunk[k] = kGeneral;
-    disturbed_[k] = static_cast<std::uint16_t>(disturbed_[k] | (1u << (i % kLanes)));
-    const int at = level.specialAt[s];
-    if (at < level.extrasBegin)
-      level.id[at] = -level.specialInverse[s];  // in use, but not by the rows' loops
-  }
-  level.runs.clear();
-  level.bandRuns.clear();
-  for (int j = 0; j < level.ny; ++j) {
-    level.runBegin[j] = static_cast<int>(level.runs.size());
-    level.bandBegin[j] = static_cast<int>(level.bandRuns.size());
-    for (int c = 0; c < level.chunks; ++c) {
-      const int k = j * level.chunks + c, i = c * kLanes;
-      if (level.chunk[k] & kEmpty) continue;
-      const bool regular = level.chunk[k] & kRegular;
-      if (level.runBegin[j] < static_cast<int>(level.runs.size()) && level.runs.back().end == i &&
-          level.runs.back().regular == regular)
-        level.runs.back().end = i + kLanes;
-      else
-        level.runs.push_back({i, i + kLanes, regular});
-
-      unsigned near = disturbed_[k];
-      if (j > 0) near |= disturbed_[k - level.chunks];
-      if (j + 1 < level.ny) near |= disturbed_[k + level.chunks];
-      if (c > 0) near |= disturbed_[k - 1] & 0xc000u;
-      if (c + 1 < level.chunks) near |= disturbed_[k + 1] & 0x3u;
-      if (!near) continue;
-      level.chunk[k] |= kBand;
-      if (level.bandBegin[j] < static_cast<int>(level.bandRuns.size()) && level.bandRuns.back().end == i)
-        level.bandRuns.back().end = i + kLanes;
-      else
-        level.bandRuns.push_back({i, i + kLanes, false});
-    }
-  }
-  level.runBegin[level.ny] = static_cast<int>(level.runs.size());
-  level.bandBegin[level.ny] = static_cast<int>(level.bandRuns.size());
 }
 
 std::size_t Builder::bytes() const {

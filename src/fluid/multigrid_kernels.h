@@ -6,8 +6,9 @@
 #pragma once
 #include "fluid/multigrid_level.h"
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"  // vectors wider than the machine's stay inside inlined functions
+// Vectors wider than the machine's stay inside inlined functions. The warning comes at the end of a file: not
+// restored.
+#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace smokebox::multigrid {
 
@@ -42,6 +43,15 @@ SMOKEBOX_INLINE float largestLane(const Lanes& v) {
   float m = v[0];
   for (int k = 1; k < kLanes; ++k) m = (v[k] > m || v[k] != v[k]) ? v[k] : m;
   return m;
+}
+
+/// A bit for each lane that is true.
+SMOKEBOX_INLINE unsigned bitsOf(const LaneMask& m) {
+  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  const LaneMask bits = m & place;
+  int sum = 0;
+  for (int k = 0; k < kLanes; ++k) sum |= bits[k];
+  return static_cast<unsigned>(sum);
 }
 
 /// Lanes of row j that have the given colour (0 red: i + j even).
@@ -217,5 +227,3 @@ inline void prolongRow(Level& fine, const Level& coarse, int j) {
 }
 
 }  // namespace smokebox::multigrid
-
-#pragma GCC diagnostic pop

@@ -57,9 +57,10 @@ struct Level {
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
   std::ptrdiff_t extrasBegin = 0;         // offset of the first extra unknown
   int extras = 0;
-  std::vector<double> widthX, widthY;  // of each column and row, in cells of the finest grid
+  std::vector<double> widthX, widthY;        // of each column and row, in cells of the finest grid
   std::vector<double> distanceX, distanceY;  // between the centres beside face 0..n, in the same unit
-  // What the links are without solids: on an x-face, high[j] nearX[i]; on a y-face, wide[i] nearY[j]. Padded with 0.
+  // What the links are without solids: on an x-face, high[j] nearX[i]; on a y-face, wide[i] nearY[j]. Padded
+  // with 0.
   std::vector<float> wide, high, nearX, nearY;
   std::vector<float> slackX;  // how far an x-face may be off: anything at the sides
 

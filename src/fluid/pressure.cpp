@@ -10,8 +10,6 @@
 #include "fluid/pressure_flux.h"
 #include "fluid/regions.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace smokebox {
 
 using multigrid::Floats;

@@ -6,8 +6,6 @@
 #include "fluid/multigrid.h"
 #include "fluid/multigrid_kernels.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace smokebox {
 
 using multigrid::kEmpty;
