@@ -23,12 +23,15 @@ void Fluid::boundaryChanged(const Boundary& boundary) {
   if (viscosity_) viscosity_->rebuild(boundary);
 }
 
+void Fluid::prepareUncovering(const Boundary& before) { advection_.extend(before, u_, v_); }
+
 void Fluid::clearForces() {
   accelerationU_.fill(0);
   accelerationV_.fill(0);
 }
 
 void Fluid::addConfinement(const Boundary& boundary, double strength, double length) {
+  advection_.extend(boundary, u_, v_);  // the curl beside walls and surfaces needs what lies behind them
   confinement_->addForce(boundary, u_, v_, strength, length, accelerationU_, accelerationV_);
 }
 
@@ -65,7 +68,7 @@ PressureSolver::Result Fluid::project(const Boundary& boundary, double dt, doubl
 
 Fluid::ExtendedVelocity Fluid::extended(const Boundary& boundary) const {
   ExtendedVelocity copy{u_, v_};
-  extendVelocity(boundary, copy.u, copy.v);
+  advection_.extend(boundary, copy.u, copy.v);
   return copy;
 }
 

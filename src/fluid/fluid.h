@@ -29,6 +29,9 @@ class Fluid {
   /// The fractions have changed: refreshes what the stages keep of them.
   void boundaryChanged(const Boundary& boundary);
 
+  /// Solids are about to move away from `before`: the faces that they uncover must hold the fluid's velocity.
+  void prepareUncovering(const Boundary& before);
+
   /// Sets all accelerations to 0; the scene's own are then added to accelerationU() and accelerationV(),
   /// m/s^2.
   void clearForces();

@@ -109,8 +109,7 @@ std::string whyFixed(const std::string& path) {
     if (first == fixed) return "`" + first + "` cannot change during a run";
   if (first == "solids" || first == "probes") {
     if (steps.size() < 3) return "the list of `" + first + "` cannot change during a run";
-    for (const char* fixed :
-         {"name", "shape", "position", "angle", "motion", "report", "at", "region", "follow"})
+    for (const char* fixed : {"name", "shape", "position", "angle", "report", "at", "region", "follow"})
       if (steps[2] == fixed) return "`" + steps[2] + "` of " + first + " cannot change during a run";
   }
   return {};

@@ -7,11 +7,13 @@ namespace smokebox {
 SmokeStage::SmokeStage(const SceneSpec& spec, const Boundary& boundary, double tolerance, ThreadPool& pool)
     : grid_(spec.domain.grid),
       tolerance_(tolerance),
+      pool_(pool),
       colors_(spec.smokeColors()),
       smoke_(boundary, pool, static_cast<int>(colors_.size())) {
   for (const SourceSpec& source : spec.smoke.sources) {
     Source made{source, channelOf(source.color), Field(grid_.nx, grid_.ny)};
     coverShare(grid_, outlinesOf(source.shape, tolerance_), made.share);
+    fillRim(boundary, made.share);
     sources_.push_back(std::move(made));
   }
 }
@@ -48,23 +50,31 @@ void SmokeStage::addBuoyancy(const Boundary& boundary, double buoyancy, Vec2 gra
   const auto halfX = static_cast<float>(0.5 * buoyancy * up.x),
              halfY = static_cast<float>(0.5 * buoyancy * up.y);
   const int nx = grid_.nx, ny = grid_.ny;
-  for (int channel = 0; channel < smoke_.channels(); ++channel) {
-    const Field& value = smoke_.value(channel);
-    for (int j = 0; j <= ny; ++j) {
-      const float *here = value.row(j), *below = value.row(j - 1);
-      const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
-      if (halfX != 0 && j < ny) {
-        float* au = accelerationU.row(j);
+  const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
+  constexpr int kRows = 16;
+  pool_.blocks(0, ny + 1, kRows, [&](int begin, int end) {
+    for (int channel = 0; channel < smoke_.channels(); ++channel) {
+      const Field& value = smoke_.value(channel);
+      for (int j = begin; j < end; ++j) {
+        // On the rim the cell beyond is the other side's, or the same as the one inside.
+        const float* here = value.row(j < ny ? j : wrapY ? 0 : ny - 1);
+        const float* below = value.row(j > 0 ? j - 1 : wrapY ? ny - 1 : 0);
+        const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
+        if (halfX != 0 && j < ny) {
+          float* au = accelerationU.row(j);
 #pragma omp simd
-        for (int i = 0; i <= nx; ++i) au[i] += openX[i] > 0 ? halfX * (here[i - 1] + here[i]) : 0.f;
-      }
-      if (halfY != 0) {
-        float* av = accelerationV.row(j);
+          for (int i = 1; i < nx; ++i) au[i] += openX[i] > 0 ? halfX * (here[i - 1] + here[i]) : 0.f;
+          if (openX[0] > 0) au[0] += halfX * (here[wrapX ? nx - 1 : 0] + here[0]);
+          if (openX[nx] > 0) au[nx] += halfX * (here[nx - 1] + here[wrapX ? 0 : nx - 1]);
+        }
+        if (halfY != 0) {
+          float* av = accelerationV.row(j);
 #pragma omp simd
-        for (int i = 0; i < nx; ++i) av[i] += openY[i] > 0 ? halfY * (below[i] + here[i]) : 0.f;
+          for (int i = 0; i < nx; ++i) av[i] += openY[i] > 0 ? halfY * (below[i] + here[i]) : 0.f;
+        }
       }
     }
-  }
+  });
 }
 
 void SmokeStage::driveFluid(const Boundary& boundary, double time, Fluid& fluid) const {

@@ -38,6 +38,7 @@ class SmokeStage {
 
   Grid grid_;
   double tolerance_;
+  ThreadPool& pool_;
   std::vector<Color> colors_;  // one for each channel
   struct Source {
     SourceSpec spec;

@@ -137,6 +137,7 @@ void World::fireEvents() {
       const long steps = std::max(1L, std::lround(force->duration / spec_.time.step));
       ActiveForce made{Field(grid.nx, grid.ny), force->acceleration, stepCount_ + steps};
       coverShare(grid, outlinesOf(force->shape, kOutlineTolerance * grid.h), made.share);
+      fillRim(boundary_, made.share);
       forces_.push_back(std::move(made));
     } else if (const auto* visibility = std::get_if<VisibilityAction>(&action)) {
       solids_.setShown(solids_.find(visibility->solid), visibility->visible);
@@ -169,6 +170,7 @@ void World::adoptSettings(const SetAction& action) {
 void World::coverGrid(bool shapesMoved) {
   if (wallsDependOnTime_) setWalls(time() + spec_.time.step);
   if (!shapesMoved && !solidsMovedBefore_ && !wallsDependOnTime_) return;
+  if (shapesMoved) fluid_->prepareUncovering(boundary_);
   onGrid_.cover(solids_.moving(), shapesMoved, boundary_);
   if (shapesMoved) fluid_->boundaryChanged(boundary_);
   solidsMovedBefore_ = shapesMoved;  // one more time after the last move, for the velocities to become 0

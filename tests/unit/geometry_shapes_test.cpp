@@ -66,8 +66,8 @@ TEST(Shapes, PolygonsOfEitherOrientationComeOutCounterclockwise) {
 TEST(Shapes, QuarterTurnsAreExact) {
   // A box turned by 90 degrees is the other box, to the bit.
   const Outline turned = outlinesOf({BoxShape{{2, 1}}, {{5, 5}, kPi / 2}}, 1)[0];
-  for (Vec2 p : outlinesOf({BoxShape{{1, 2}}, {{5, 5}, 0}}, 1)[0])
-    EXPECT_NE(std::find(turned.begin(), turned.end(), p), turned.end());
+  const Outline upright = outlinesOf({BoxShape{{1, 2}}, {{5, 5}, 0}}, 1)[0];
+  for (Vec2 p : upright) EXPECT_NE(std::find(turned.begin(), turned.end(), p), turned.end());
 }
 
 TEST(Shapes, PosesCombine) {
