@@ -13,8 +13,12 @@ using libav::checkWrite;
 namespace {
 
 // More threads would cut x264's motion search differently; a fixed number keeps the bytes of a film the same
-// on every machine that has the same x264.
-constexpr int kEncoderThreads = 4;
+// on every machine that has the same x264. Two keep ahead of the simulation, and leave it the other cores.
+constexpr int kEncoderThreads = 2;
+
+// What x264's preset does beyond this costs half as much time again, and makes films of smoke 10 to 20%
+// smaller at the same error (wake, 1280x720: 14 ms a frame instead of 9, 50 dB both times).
+constexpr const char* kX264Parameters = "bframes=0:weightp=0:subme=1";
 
 class Dictionary {
  public:
@@ -70,6 +74,7 @@ void FilmSink::openEncoder(const FilmFormat& format) {
     encoder_->chroma_sample_location = AVCHROMA_LOC_LEFT;
     options.set("preset", "veryfast");
     options.set("crf", "18");
+    options.set("x264-params", kX264Parameters);
     yuv_.emplace(format.width, format.height);
   } else {
     encoder_->pix_fmt = AV_PIX_FMT_0RGB32;
