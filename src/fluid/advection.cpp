@@ -15,6 +15,9 @@ namespace {
 constexpr int kRowGrain = 32;
 constexpr double kLargestCourant = 1.4;
 constexpr int kMostSubSteps = 4;
+// Iterations of the rough projections. Drifting vortices, 128 cells: with 1 cycle inside a single step the
+// error is 2.4 times as large; a second one between sub-steps changes it by 1%, none at all is unstable.
+constexpr int kCyclesInStep = 2, kCyclesInSubStep = 1, kCyclesBetween = 1;
 
 }  // namespace
 
@@ -41,7 +44,7 @@ struct Advection::Impl {
     extension.apply(boundary, *s.outU, *s.outV);
   }
 
-  /// One Wicker-Skamarock step; u, v extended in and out.
+  /// One Wicker-Skamarock step of dt, `phiShare` of the whole; u, v extended in and out.
   void rungeKutta(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
                   const Field* accelerationV, double dt, double phiShare,
                   const RoughProjection& projectRoughly) {
@@ -59,7 +62,8 @@ struct Advection::Impl {
     };
     run(u, v, u1, v1, 1.0 / 3);
     run(u1, v1, u2, v2, 1.0 / 2);
-    projectRoughly(u2, v2);
+    // The increment is that of half this step.
+    projectRoughly(u2, v2, phiShare < 1 ? kCyclesInSubStep : kCyclesInStep, 2 / phiShare);
     extension.apply(boundary, u2, v2);
     run(u2, v2, u1, v1, 1);
     u.swap(u1);
@@ -137,7 +141,7 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     for (int k = 0; k < result.subSteps; ++k) {
       m.rungeKutta(boundary, u, v, phi, accelerationU, accelerationV, share * dt, share, projectRoughly);
       if (k + 1 == result.subSteps) break;
-      projectRoughly(u, v);
+      projectRoughly(u, v, kCyclesBetween, result.subSteps);
       m.extension.apply(boundary, u, v);
     }
     return result;

@@ -36,11 +36,11 @@ void Fluid::addConfinement(const Boundary& boundary, double strength, double len
 }
 
 void Fluid::advect(const Boundary& boundary, double dt) {
-  // Two cycles are enough in the middle of a step (NUMERICS, "Velocity").
-  constexpr int kRoughCycles = 2;
   advection_.advance(boundary, u_, v_, phi_, parts_.forced ? &accelerationU_ : nullptr,
                      parts_.forced ? &accelerationV_ : nullptr, dt,
-                     [&](Field& u, Field& v) { pressure_.projectRoughly(boundary, u, v, kRoughCycles); });
+                     [&](Field& u, Field& v, int cycles, double gain) {
+                       pressure_.projectRoughly(boundary, u, v, cycles, &phi_, gain);
+                     });
 }
 
 void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {

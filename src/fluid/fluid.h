@@ -44,7 +44,10 @@ class Fluid {
   PressureSolver::Result project(const Boundary& boundary, double dt, double tolerance, int maxIterations);
 
   /// Sets the lagged pressure to 0.
-  void forgetPressure() { phi_.fill(0); }
+  void forgetPressure() {
+    phi_.fill(0);
+    pressure_.forget();
+  }
 
   /// m/s on the faces.
   Field& u() { return u_; }

@@ -35,7 +35,7 @@ double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 struct PressureSolver::Impl {
   Impl(const Boundary& boundary, ThreadPool& threads)
       : pool(threads), multigrid(boundary, threads), flux(boundary, threads) {
-    solution = direction = multigrid.finest().x;
+    solution = direction = increment = multigrid.finest().x;
     rows.resize(boundary.grid.ny);
     regions.rebuild(boundary, multigrid.finest());
   }
@@ -45,7 +45,8 @@ struct PressureSolver::Impl {
     regions.rebuild(boundary, multigrid.finest());
     const std::size_t size = static_cast<std::size_t>(multigrid.finest().extrasBegin);
     rows.resize(boundary.grid.ny);
-    for (Floats* f : {&solution, &direction}) f->assign(size, 0);
+    for (Floats* f : {&solution, &direction, &increment}) f->assign(size, 0);
+    predictable = false;
   }
 
   /// The net flux into b, spread over sealed regions where it does not cancel. m/s.
@@ -64,12 +65,19 @@ struct PressureSolver::Impl {
   double advanceSolution(float alpha);
   /// Takes the mean off the solution in sealed regions.
   void centreSolution();
+  /// phi += gain x.
+  void add(const Floats& x, Field& phi, float gain);
+  /// increment += solution, copies beyond the sides too.
+  void remember();
 
   ThreadPool& pool;
   Multigrid multigrid;
   Regions regions;
   PressureFlux flux;
   Floats solution, direction;  // on the finest level's grid
+  // What the last projection of a step has found in all: the start of the next one, unless the links change.
+  Floats increment;
+  bool predictable = false;
   std::vector<double> rows, sums;
 };
 
@@ -193,6 +201,25 @@ void PressureSolver::Impl::centreSolution() {
   level.wrapRows(solution);
 }
 
+void PressureSolver::Impl::remember() {
+  pool.blocks(0, static_cast<int>(increment.size()), 1 << 14, [&](int begin, int end) {
+    float* sum = increment.data();
+    const float* x = solution.data();
+#pragma omp simd
+    for (int i = begin; i < end; ++i) sum[i] += x[i];
+  });
+}
+
+void PressureSolver::Impl::add(const Floats& values, Field& phi, float gain) {
+  const Level& level = multigrid.finest();
+  forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
+    float* target = phi.row(j);
+    const float* x = level.row(values, j);
+#pragma omp simd
+    for (int i = 0; i < level.nx; ++i) target[i] += gain * x[i];
+  });
+}
+
 int PressureSolver::Impl::solve(double start, double target, int maxIterations) {
   std::fill(solution.begin(), solution.end(), 0.0f);
   const double enough = std::max(target, start * kTrusted);
@@ -224,6 +251,13 @@ PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& 
   Impl& s = *impl_;
   const Level& level = s.multigrid.finest();
   s.flux.closeFaces(boundary, level, u, v);
+  if (s.predictable) {
+    s.flux.subtractGradient(level, s.increment, u, v);
+    s.add(s.increment, phi, 1);
+  } else {
+    std::fill(s.increment.begin(), s.increment.end(), 0.0f);
+  }
+  s.predictable = true;
   Result result;
   double before = std::numeric_limits<double>::infinity();
   while (true) {
@@ -244,16 +278,16 @@ PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& 
     if (done == 0) break;
     result.iterations += done;
     s.flux.subtractGradient(level, s.solution, u, v);
-    forRows(s.pool, boundary.grid.cells(), 0, level.ny, [&](int j) {
-      float* target = phi.row(j);
-      const float* x = level.row(s.solution, j);
-      for (int i = 0; i < level.nx; ++i) target[i] += x[i];
-    });
+    s.add(s.solution, phi, 1);
+    s.remember();
   }
   return result;
 }
 
-void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v, int cycles) {
+void PressureSolver::forget() { impl_->predictable = false; }
+
+void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v, int cycles, Field* phi,
+                                    double gain) {
   Impl& s = *impl_;
   const Level& level = s.multigrid.finest();
   s.flux.closeFaces(boundary, level, u, v);
@@ -261,11 +295,12 @@ void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v
   if (!(source.flux > 0) || !std::isfinite(source.flux)) return;
   s.solve(source.flux, 0, cycles);
   s.flux.subtractGradient(level, s.solution, u, v);
+  if (phi) s.add(s.solution, *phi, static_cast<float>(gain));
 }
 
 std::size_t PressureSolver::bytes() const {
   const Impl& s = *impl_;
-  return s.multigrid.bytes() + s.regions.bytes() + 2 * s.solution.capacity() * sizeof(float) +
+  return s.multigrid.bytes() + s.regions.bytes() + 3 * s.solution.capacity() * sizeof(float) +
          2 * s.rows.capacity() * sizeof(double);
 }
 

@@ -75,7 +75,8 @@ void velocityAdvance(benchmark::State& state) {
   const Field u = run.u, v = run.v;
   const double dt = 0.1 * static_cast<double>(state.range(2)) / n;
   for (auto _ : state) {
-    run.advection.advance(run.boundary, run.u, run.v, run.phi, nullptr, nullptr, dt, [](Field&, Field&) {});
+    run.advection.advance(run.boundary, run.u, run.v, run.phi, nullptr, nullptr, dt,
+                          [](Field&, Field&, int, double) {});
     state.PauseTiming();
     run.u = u, run.v = v;
     state.ResumeTiming();

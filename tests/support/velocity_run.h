@@ -34,7 +34,9 @@ struct VelocityRun {
   Advection::Result carry(double dt, const Field* accelerationU = nullptr,
                           const Field* accelerationV = nullptr) {
     return advection.advance(boundary, u, v, phi, accelerationU, accelerationV, dt,
-                             [&](Field& a, Field& b) { pressure.projectRoughly(boundary, a, b, 2); });
+                             [&](Field& a, Field& b, int cycles, double gain) {
+                               pressure.projectRoughly(boundary, a, b, cycles, &phi, gain);
+                             });
   }
 
   Advection::Result step(double dt) {

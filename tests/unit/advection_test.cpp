@@ -134,7 +134,8 @@ TEST(Advection, MirroredFlowStaysMirroredToTheBit) {
         run.u(i, j) = std::round(run.u(i, j) * 1024) / 1024 * (mirrored ? -1.0f : 1.0f);
         run.v(i, j) = std::round(run.v(i, j) * 1024) / 1024;
       }
-    run.advection.advance(b, run.u, run.v, run.phi, nullptr, nullptr, 0.01, [](Field&, Field&) {});
+    run.advection.advance(b, run.u, run.v, run.phi, nullptr, nullptr, 0.01,
+                          [](Field&, Field&, int, double) {});
     return run.u;
   };
   const Field u = carried(false), m = carried(true);
@@ -151,7 +152,7 @@ TEST(Advection, AccelerationAndLaggedPressureAreAppliedOnceAtAnyStepSize) {
       run.u.fill(static_cast<float>(speed));
       run.v.fill(0);
       run.advection.advance(run.boundary, run.u, run.v, run.phi, acceleration, nullptr, 0.05,
-                            [](Field&, Field&) {});
+                            [](Field&, Field&, int, double) {});
     };
     const Field acceleration(n, n, 3);
     carry(&acceleration);
