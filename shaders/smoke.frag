@@ -5,7 +5,6 @@ uniform sampler2D lattice;   // ONE_COLOR: density in r. Else: sum of color * de
 uniform vec4 color;          // ONE_COLOR: the colour
 uniform float thickness;     // of the smoke, per unit of its value, times log2(e)
 uniform float opacity;
-uniform vec4 ground;         // ON_GROUND: what lies behind, drawn in the same pass without blending
 in vec2 place;
 out vec4 fragment;
 
@@ -19,9 +18,5 @@ void main() {
   vec3 mixed = clamp(smoke.rgb / max(smoke.a, 1e-9), 0.0, 1.0);
 #endif
   alpha *= opacity;
-#ifdef ON_GROUND
-  fragment = vec4(mix(ground.rgb, mixed, alpha), 1.0);
-#else
   fragment = alpha * vec4(mixed, 1.0);
-#endif
 }

@@ -36,7 +36,8 @@ void ColorBarLayer::draw(const Snapshot& snapshot, const std::vector<const Layer
     const int title = palette_.text.advance(style.label, size);
     const int inner = std::max(title, strip + tickLength + size / 3 + widest);
     const int left = right - inner - 2 * pad;
-    palette_.panels.add(left, top, right, bottom, linear(plate, 0.92), linear(ink, 0.12), 0.5 * size, thin);
+    // Opaque: bright arrows below would shine through, and cross the numbers.
+    palette_.panels.add(left, top, right, bottom, linear(plate), linear(ink, 0.12), 0.5 * size, thin);
 
     const int barTop = top + 2 * pad + size, barBottom = bottom - pad;
     const int barLeft = left + pad, barRight = barLeft + strip;

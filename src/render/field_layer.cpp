@@ -9,11 +9,11 @@ namespace {
 constexpr int kArm = 512;  // steps of a colour table from its middle to an end
 }  // namespace
 
-FieldLayer::FieldLayer(const Gl& gl)
-    : gl_(gl),
-      program_(gl, "smoke.vert", "field.frag"),
+FieldLayer::FieldLayer(const Gl& gl, GlTarget& target)
+    : program_(gl, "smoke.vert", "field.frag"),
       texture_(gl, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_LINEAR),
-      quad_(gl, {4, 4}) {}
+      quad_(gl, {4, 4}),
+      encoded_(target) {}
 
 bool hasField(const Snapshot& snapshot, LayerKind kind) {
   switch (kind) {
@@ -75,46 +75,47 @@ void FieldLayer::gather(const Snapshot& snapshot, LayerKind kind, const PictureF
   smoothFor(lattice_, frame.scale, scratch_);
 }
 
-void FieldLayer::color(const ColorMap& map, const std::array<double, 2>& range) {
-  if (tableOf_ != &map) {
-    tableOf_ = &map;
-    table_.resize(2 * kArm + 1);
-    for (int k = -kArm; k <= kArm; ++k) table_[k + kArm] = linear(map.at(double(k) / kArm));
-  }
+template <class Value, class Make>
+void FieldLayer::color(const ColorMap& map, const std::array<double, 2>& range, std::vector<Value>& colors,
+                       Make&& make) {
+  std::array<Value, 2 * kArm + 1> table;
+  for (int k = -kArm; k <= kArm; ++k) table[k + kArm] = make(map.at(double(k) / kArm));
   const ColorMapScale scale = colorMapScale(range, map.diverging);
   const float zero = static_cast<float>(scale.zero), above = static_cast<float>(scale.above * kArm),
               below = static_cast<float>(scale.below * kArm), lowest = map.diverging ? -float(kArm) : 0.0f;
-  colors_.resize(lattice_.values.size());
-  for (std::size_t k = 0; k < colors_.size(); ++k) {
+  colors.resize(lattice_.values.size());
+  for (std::size_t k = 0; k < colors.size(); ++k) {
     const float offset = lattice_.values[k] - zero;
     const float place = offset * (offset < 0 ? below : above);
     // Written so that a NaN takes the first branch, and shows as the middle.
     const float held = !(place == place) ? 0.0f : std::clamp(place, lowest, float(kArm));
-    colors_[k] = table_[static_cast<int>(held + kArm + 0.5f)];
+    colors[k] = table[static_cast<int>(held + kArm + 0.5f)];
   }
 }
 
-void FieldLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
-  const Grid& grid = snapshot.grid;
+void FieldLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
+                      bool onGround) {
   gather(snapshot, layer.kind, frame);
   const FieldStyle style = fieldStyle(snapshot, layer, frame);
-  color(style.map, style.range);
+  const std::vector<PictureTile> domain{{frame.left, frame.top, frame.right, frame.bottom}};
+  if (onGround) {
+    color(style.map, style.range, finished_, [](const Color& c) {
+      auto byte = [](float x) { return static_cast<std::uint32_t>(255 * std::clamp(x, 0.0f, 1.0f) + 0.5f); };
+      return byte(c.r) | byte(c.g) << 8 | byte(c.b) << 16 | 0xff000000u;
+    });
+    encoded_.draw(encoder_.packed(linear(snapshot.view.background)), finished_, lattice_, domain, frame);
+    return;
+  }
+  color(style.map, style.range, colors_, [](const Color& c) { return linear(c); });
   texture_.bind(0);
   texture_.upload(lattice_.nx, lattice_.ny, colors_.data());
+  records_.clear();
+  appendTiles(domain, lattice_, texture_, frame, records_);
   program_.use();
   program_.set("pictureSize", float(frame.width), float(frame.height));
   program_.set("lattice", 0);
   program_.set("opacity", float(layer.opacity));
-  auto u = [&](double x) {
-    return float(((x - lattice_.origin.x) / lattice_.spacing + 0.5) / texture_.width());
-  };
-  auto v = [&](double y) {
-    return float(((y - lattice_.origin.y) / lattice_.spacing + 0.5) / texture_.height());
-  };
-  if (layer.opacity >= 1) gl_.Disable(GL_BLEND);
-  quad_.draw({float(frame.left), float(frame.top), float(frame.right), float(frame.bottom), u(0),
-              v(grid.height()), u(grid.width()), v(0)});
-  gl_.Enable(GL_BLEND);
+  quad_.draw(records_);
 }
 
 }  // namespace smokebox

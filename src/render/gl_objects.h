@@ -93,6 +93,8 @@ class GlTarget {
   GlTarget(const GlTarget&) = delete;
   GlTarget& operator=(const GlTarget&) = delete;
   void bind() const;
+  /// Replaces the whole picture; the unpack alignment is taken to suit, for a pixel has 4 bytes.
+  void write(const void* rgba) { color_.upload(width_, height_, rgba); }
   /// Waits until all is drawn, and copies it out.
   void read(unsigned char* rgba) const;
 

@@ -7,6 +7,7 @@
 #include "image/colormap.h"
 #include "image/text.h"
 #include "render/batches.h"
+#include "render/encoded_lattice.h"
 #include "render/gl_objects.h"
 #include "render/mask.h"
 #include "render/picture_frame.h"
@@ -34,29 +35,27 @@ struct Palette {
 /// Smoke of any number of colours.
 class SmokeLayer {
  public:
-  explicit SmokeLayer(const Gl& gl);
-  /// `onGround`: nothing is drawn below it yet, so that blending, which costs a fifth of the frame, can be
-  /// saved.
+  SmokeLayer(const Gl& gl, GlTarget& target);
+  /// `onGround`: nothing is drawn below it yet, so that the whole picture is filled with finished colours.
   void draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame, bool onGround);
 
  private:
   void gather(const Snapshot& snapshot, const LatticeWindow& window);
   void fillClosedCells();
   void chooseTiles(const Grid& grid, const LatticeWindow& window, const PictureFrame& frame);
-  void drawTiles(const GlProgram& program, GlTexture& texture, const Snapshot& snapshot,
-                 const LayerSpec& layer, const PictureFrame& frame);
+  void drawBlended(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
+  void drawOnGround(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
 
-  const Gl& gl_;
-  GlProgram oneColor_, oneColorOnGround_, manyColors_, manyColorsOnGround_;
+  GlProgram oneColor_, manyColors_;
   GlTexture density_, colors_;
   GlInstances tiles_;
+  EncodedLattice encoded_;
+  SrgbEncoder encoder_;
+  std::vector<std::uint32_t> finished_;  // colours of the samples of the lattice, on the ground
   Lattice lattice_, scratch_;
   std::vector<float> openShare_;  // of the samples of the lattice
   std::vector<int> unreached_;    // closed samples without an open neighbour
-  struct Tile {
-    double x0, y0, x1, y1;
-  };  // pixels
-  std::vector<Tile> smoky_;
+  std::vector<PictureTile> smoky_;
   std::vector<float> records_;
 };
 
@@ -65,21 +64,26 @@ class SmokeLayer {
 /// double the frame.
 class FieldLayer {
  public:
-  explicit FieldLayer(const Gl& gl);
-  void draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame);
+  FieldLayer(const Gl& gl, GlTarget& target);
+  /// `onGround`: as above; the layer must be opaque.
+  void draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame, bool onGround);
 
  private:
   void gather(const Snapshot& snapshot, LayerKind kind, const PictureFrame& frame);
-  void color(const ColorMap& map, const std::array<double, 2>& range);
+  /// Colours of the lattice's samples, in the form that `make` gives them.
+  template <class Value, class Make>
+  void color(const ColorMap& map, const std::array<double, 2>& range, std::vector<Value>& colors,
+             Make&& make);
 
-  const Gl& gl_;
   GlProgram program_;
   GlTexture texture_;
   GlInstances quad_;
+  EncodedLattice encoded_;
+  SrgbEncoder encoder_;
   Lattice lattice_, scratch_;
-  std::vector<LinearColor> table_;  // of tableOf_: both arms, the middle in the middle
-  const ColorMap* tableOf_ = nullptr;
-  std::vector<LinearColor> colors_;  // of the lattice's samples
+  std::vector<LinearColor> colors_;      // of the lattice's samples, to be blended
+  std::vector<std::uint32_t> finished_;  // the same, ready for the file
+  std::vector<float> records_;
 };
 
 /// How a field is shown: its colours, the range for the film, its name with the unit.

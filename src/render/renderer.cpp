@@ -28,8 +28,8 @@ struct Renderer::Impl {
         height(h),
         target(context.gl(), w, h),
         palette(context.gl(), w, h),
-        smoke(context.gl()),
-        field(context.gl()),
+        smoke(context.gl(), target),
+        field(context.gl(), target),
         solids(palette),
         arrows(context.gl()),
         colorBars(palette),
@@ -46,6 +46,11 @@ struct Renderer::Impl {
 namespace {
 bool isField(LayerKind kind) {
   return kind == LayerKind::pressure || kind == LayerKind::vorticity || kind == LayerKind::speed;
+}
+/// Can it be drawn together with the ground?
+bool fillsPicture(const Snapshot& snapshot, const LayerSpec& layer) {
+  if (layer.kind == LayerKind::smoke) return !snapshot.smoke.empty();
+  return isField(layer.kind) && layer.opacity >= 1 && hasField(snapshot, layer.kind);
 }
 }  // namespace
 
@@ -69,9 +74,6 @@ void Renderer::draw(const Snapshot& snapshot, Image& image) {
   gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // colours are premultiplied
 
   const PictureFrame frame = frameOf(snapshot, r.width, r.height);
-  const LinearColor ground = linear(snapshot.view.background);
-  gl.ClearColor(ground[0], ground[1], ground[2], 1);
-  gl.Clear(GL_COLOR_BUFFER_BIT);
   r.drawDomain(snapshot, frame);
   r.drawAround(snapshot, frame);
   r.drawOnTop(snapshot, frame);
@@ -96,14 +98,21 @@ void Renderer::Impl::drawDomain(const Snapshot& snapshot, const PictureFrame& fr
     (layer->kind == LayerKind::solids && layer < lastFluid ? late : order).push_back(&*layer);
   }
   if (lastFluid == layers.end()) order.insert(order.end(), late.begin(), late.end());
-  for (const LayerSpec* layer : order) drawInDomain(snapshot, *layer, frame, layer == order.front());
+  const bool filled = !order.empty() && fillsPicture(snapshot, *order.front());
+  if (!filled) {
+    const LinearColor ground = linear(snapshot.view.background);
+    context.gl().ClearColor(ground[0], ground[1], ground[2], 1);
+    context.gl().Clear(GL_COLOR_BUFFER_BIT);
+  }
+  for (const LayerSpec* layer : order)
+    drawInDomain(snapshot, *layer, frame, filled && layer == order.front());
 }
 
 void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
                                   bool onGround) {
   switch (layer.kind) {
     case LayerKind::smoke:
-      smoke.draw(snapshot, layer, frame, onGround);
+      if (!snapshot.smoke.empty()) smoke.draw(snapshot, layer, frame, onGround);
       break;
     case LayerKind::solids:
       solids.draw(snapshot, layer, frame);
@@ -111,7 +120,7 @@ void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& lay
     case LayerKind::pressure:
     case LayerKind::vorticity:
     case LayerKind::speed:
-      if (hasField(snapshot, layer.kind)) field.draw(snapshot, layer, frame);
+      if (hasField(snapshot, layer.kind)) field.draw(snapshot, layer, frame, onGround);
       break;
     case LayerKind::velocity:
       arrows.draw(snapshot, layer, frame);

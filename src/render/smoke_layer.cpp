@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "render/layers.h"
@@ -10,42 +11,87 @@ namespace {
 // the same strength of colour, for it shines through far brighter.
 constexpr double kThicknessOnDark = 1.8, kThicknessOnLight = 3.0;
 constexpr float kInvisible = 1e-5f;  // a density that changes no pixel
+constexpr int kRunSamples = 64;      // samples that are coloured together
 constexpr float kFilled = 1e-3f;     // weight of a closed cell that was given a value
 constexpr int kTilePixels = 64;      // edge of the tiles that llvmpipe draws in
 constexpr int kRunCells = 16;        // cells that are looked at together
 constexpr int kReach = 3;           // cells beyond its own that a value can be seen, filled solids counted in
 constexpr double kReachPixels = 3;  // the same where cells are finer than pixels
+
+float thicknessOn(const PictureFrame& frame) {
+  return float((frame.darkGround ? kThicknessOnDark : kThicknessOnLight) / std::log(2.0));
+}
+
+/// 2^-x for x >= 0 within 2e-5, in operations that the compiler turns into vectors.
+inline float halvings(float x) {
+  x = std::min(x, 120.0f);
+  const int whole = static_cast<int>(x);
+  const float y = (x - static_cast<float>(whole)) * 0.693147181f;
+  // The series of exp(-y).
+  const float part =
+      1 +
+      y * (-1 + y * (1 / 2.0f + y * (-1 / 6.0f + y * (1 / 24.0f + y * (-1 / 120.0f + y * (1 / 720.0f))))));
+  return part * std::bit_cast<float>((127 - whole) << 23);
+}
+
+/// Colours are weighed by densities, so that where the largest number is none, there is no smoke.
+inline bool emptyRun(const float* values, int count) {
+  float most = 0;
+  for (int k = 0; k < count; ++k) most = values[k] > most ? values[k] : most;
+  return most <= kInvisible;
+}
+
+/// What a run of smoke shows: its colours over the ground.
+struct Shade {
+  LinearColor ground, color;  // color: of smoke that has one only
+  float thickness, opacity;
+};
+
+/// What smoke.frag does, and the ground under it, for each sample.
+template <int kChannels>
+void colorRun(const float* row, int count, const Shade& shade, const SrgbEncoder& encoder,
+              std::uint32_t* out) {
+  int roots[3][kRunSamples];
+  for (int i = 0; i < count; ++i) {
+    const float density = std::max(row[i * kChannels + kChannels - 1], 0.0f);
+    const float alpha = shade.opacity * (1 - halvings(shade.thickness * density));
+    const float weight = alpha / std::max(density, 1e-9f);
+    for (int c = 0; c < 3; ++c) {
+      const float smoke = kChannels == 1 ? alpha * shade.color[c] : weight * row[i * kChannels + c];
+      const float light = std::clamp(shade.ground[c] * (1 - alpha) + smoke, 0.0f, 1.0f);
+      roots[c][i] = static_cast<int>(SrgbEncoder::kSteps * std::sqrt(light) + 0.5f);
+    }
+  }
+  for (int i = 0; i < count; ++i)
+    out[i] = encoder.atRoot(roots[0][i]) | encoder.atRoot(roots[1][i]) << 8 |
+             encoder.atRoot(roots[2][i]) << 16 | 0xff000000u;
+}
 }  // namespace
 
-SmokeLayer::SmokeLayer(const Gl& gl)
-    : gl_(gl),
-      oneColor_(gl, "smoke.vert", "smoke.frag", "#define ONE_COLOR\n"),
-      oneColorOnGround_(gl, "smoke.vert", "smoke.frag", "#define ONE_COLOR\n#define ON_GROUND\n"),
+SmokeLayer::SmokeLayer(const Gl& gl, GlTarget& target)
+    : oneColor_(gl, "smoke.vert", "smoke.frag", "#define ONE_COLOR\n"),
       manyColors_(gl, "smoke.vert", "smoke.frag"),
-      manyColorsOnGround_(gl, "smoke.vert", "smoke.frag", "#define ON_GROUND\n"),
       density_(gl, GL_R32F, GL_RED, GL_FLOAT, GL_LINEAR),
       colors_(gl, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_LINEAR),
-      tiles_(gl, {4, 4}) {}
+      tiles_(gl, {4, 4}),
+      encoded_(target) {}
 
 void SmokeLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
                       bool onGround) {
-  if (snapshot.smoke.empty()) return;
   const Grid& grid = snapshot.grid;
   const Vec2 first{grid.h / 2, grid.h / 2};
   const LatticeWindow window = visibleWindow(frame, grid, first, grid.nx, grid.ny);
   gather(snapshot, window);
   chooseTiles(snapshot.grid, window, frame);
-  if (smoky_.empty()) return;
+  if (smoky_.empty() && !onGround) return;
   fillClosedCells();
   lattice_.origin = {first.x + window.i0 * grid.h, first.y + window.j0 * grid.h};
   lattice_.spacing = grid.h;
   smoothFor(lattice_, frame.scale, scratch_);
-  if (onGround) gl_.Disable(GL_BLEND);
-  if (lattice_.channels == 1)
-    drawTiles(onGround ? oneColorOnGround_ : oneColor_, density_, snapshot, layer, frame);
+  if (onGround)
+    drawOnGround(snapshot, layer, frame);
   else
-    drawTiles(onGround ? manyColorsOnGround_ : manyColors_, colors_, snapshot, layer, frame);
-  gl_.Enable(GL_BLEND);
+    drawBlended(snapshot, layer, frame);
 }
 
 /// Densities (one colour), or the sums of colour times density and of density (many), and the open shares.
@@ -76,14 +122,22 @@ void SmokeLayer::gather(const Snapshot& snapshot, const LatticeWindow& window) {
         continue;
       }
       const LinearColor color = linear(smoke.color);
-      eachColumn([&](int i, int from) {
-        const float density = std::max(row[from], 0.0f);
-        float* to = out + 4 * (i - window.i0);
-        to[0] += color[0] * density;
-        to[1] += color[1] * density;
-        to[2] += color[2] * density;
-        to[3] += density;
-      });
+      auto add = [&](int begin, int end, int shift) {
+        for (int i = begin; i < end; ++i) {
+          const float density = std::max(row[i + shift], 0.0f);
+          float* to = out + 4 * (i - window.i0);
+          for (int c = 0; c < 4; ++c) to[c] += color[c] * density;  // color[3] is 1
+        }
+      };
+      for (int i = window.i0; i < runBegin; ++i) add(i, i + 1, wrapIndex(i, grid.nx, periodX) - i);
+      for (int begin = runBegin; begin < runEnd; begin += kRunCells) {
+        // A place has few of many colours.
+        const int end = std::min(begin + kRunCells, runEnd);
+        float most = 0;
+        for (int i = begin; i < end; ++i) most = std::max(most, row[i]);
+        if (most > 0) add(begin, end, 0);
+      }
+      for (int i = runEnd; i < window.i1; ++i) add(i, i + 1, wrapIndex(i, grid.nx, periodX) - i);
     }
   }
 }
@@ -167,31 +221,42 @@ void SmokeLayer::chooseTiles(const Grid& grid, const LatticeWindow& window, cons
   }
 }
 
-void SmokeLayer::drawTiles(const GlProgram& program, GlTexture& texture, const Snapshot& snapshot,
-                           const LayerSpec& layer, const PictureFrame& frame) {
+void SmokeLayer::drawBlended(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
+  const bool one = lattice_.channels == 1;
+  const GlProgram& program = one ? oneColor_ : manyColors_;
+  GlTexture& texture = one ? density_ : colors_;
   texture.bind(0);
   texture.upload(lattice_.nx, lattice_.ny, lattice_.values.data());
-  auto u = [&](double x) {
-    return float(((x - lattice_.origin.x) / lattice_.spacing + 0.5) / texture.width());
-  };
-  auto v = [&](double y) {
-    return float(((y - lattice_.origin.y) / lattice_.spacing + 0.5) / texture.height());
-  };
   records_.clear();
-  for (const Tile& tile : smoky_) {
-    if (tile.x0 >= tile.x1 || tile.y0 >= tile.y1) continue;
-    const Vec2 upperLeft = frame.toWorld({tile.x0, tile.y0}), lowerRight = frame.toWorld({tile.x1, tile.y1});
-    records_.insert(records_.end(), {float(tile.x0), float(tile.y0), float(tile.x1), float(tile.y1),
-                                     u(upperLeft.x), v(upperLeft.y), u(lowerRight.x), v(lowerRight.y)});
-  }
+  appendTiles(smoky_, lattice_, texture, frame, records_);
   program.use();
   program.set("pictureSize", float(frame.width), float(frame.height));
   program.set("lattice", 0);
-  program.set("thickness", float((frame.darkGround ? kThicknessOnDark : kThicknessOnLight) / std::log(2.0)));
+  program.set("thickness", thicknessOn(frame));
   program.set("opacity", float(layer.opacity));
-  program.set("ground", linear(snapshot.view.background));
   program.set("color", linear(snapshot.smoke.front().color));
   tiles_.draw(records_);
+}
+
+void SmokeLayer::drawOnGround(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
+  const Shade shade{linear(snapshot.view.background), linear(snapshot.smoke.front().color),
+                    thicknessOn(frame), float(layer.opacity)};
+  const std::uint32_t nothing = encoder_.packed(shade.ground);
+  const int nx = lattice_.nx, channels = lattice_.channels;
+  finished_.resize(std::size_t(nx) * lattice_.ny);
+  for (int j = 0; j < lattice_.ny; ++j)
+    for (int begin = 0; begin < nx; begin += kRunSamples) {
+      const int count = std::min(kRunSamples, nx - begin);
+      const float* const row = lattice_.row(j) + std::size_t(begin) * channels;
+      std::uint32_t* const out = finished_.data() + std::size_t(j) * nx + begin;
+      if (emptyRun(row, count * channels))
+        std::fill_n(out, count, nothing);
+      else if (channels == 1)
+        colorRun<1>(row, count, shade, encoder_, out);
+      else
+        colorRun<4>(row, count, shade, encoder_, out);
+    }
+  encoded_.draw(nothing, finished_, lattice_, smoky_, frame);
 }
 
 }  // namespace smokebox
