@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kGrain = 32;
 constexpr float kSliver = 0.25f;
+constexpr float kLargest = 1e30f;
 
 // The smallest power of two q with value <= 2^23 q: twice as much still fits into the exact range of float32.
 float quantumFor(float value) {
@@ -46,7 +47,6 @@ struct Smoke::Impl {
   Activity activeOut;
   std::vector<Trapped> trapped;
   std::vector<float> clusterMass, clusterVolume;
-  Field lastVolume;  // open shares at the end of the last step
   double cellArea;
   bool yFirst = false;
 
@@ -69,12 +69,13 @@ struct Smoke::Impl {
 
   void setQuantum(Channel& c, float q) { c.quantum = {q, 1 / q}; }
   void makeRoom(int channel, float highest);
-  void begin(int channel);
+  void move(int channel, const std::vector<SmokeTransfer>& transfers);
+  void renew(Channel& c, int cell, const Field& volume, float highest);
   void release(const Boundary& b);
   void shareValues(Channel& c, const Field& volume);
   void donorClusters(const Channel& c, Axis axis, const Field& volume);
   void fillMargins(Channel& c, Axis axis);
-  void endClusters(Channel& c, const Boundary& b);
+  void endClusters(Channel& c, const Boundary& b, float highest);
   void touch(Channel& c, int cell) {
     c.active.at(volumes.cells().i(cell) / Activity::kStrip, volumes.cells().j(cell)) = 1;
   }
@@ -112,14 +113,16 @@ void Smoke::Impl::makeRoom(int channel, float highest) {
   if (carried != 0) trapped.push_back({channel, 0, carried});
 }
 
-// What the solids push from cell to cell.
-void Smoke::Impl::begin(int channel) {
+// What goes from cell to cell.
+void Smoke::Impl::move(int channel, const std::vector<SmokeTransfer>& transfers) {
   Channel& c = channels[channel];
   const SmokeCells& cells = volumes.cells();
   const Quantum q = c.quantum;
-  for (const SmokeTransfer& t : volumes.plan().transfers()) {
+  for (const SmokeTransfer& t : transfers) {
     float& from = c.mass(cells.i(t.from), cells.j(t.from));
-    const float moved = t.share >= 1 ? from : std::floor(from * t.share * q.inverse) * q.size;
+    if (!(from > 0)) continue;
+    const float moved =
+        t.share >= 1 ? from : std::min(from, std::floor(from * t.share * q.inverse + 0.5f) * q.size);
     if (!(moved > 0)) continue;
     from -= moved;
     if (t.to < 0) {
@@ -142,9 +145,17 @@ void Smoke::Impl::release(const Boundary& b) {
     const float moved = static_cast<float>(std::floor(t.mass * c.quantum.inverse) * c.quantum.size);
     c.mass(cells.i(to), cells.j(to)) += moved;
     t.mass -= moved;
+    renew(c, to, volumes.carried(), kLargest);
+    c.highest = std::max(c.highest, c.value(cells.i(to), cells.j(to)));
     touch(c, to);
   }
   std::erase_if(trapped, [](const Trapped& t) { return t.mass == 0; });
+}
+
+// The value of a cell from its mass; `highest` is passed by rounding only.
+void Smoke::Impl::renew(Channel& c, int cell, const Field& volume, float highest) {
+  const int i = volumes.cells().i(cell), j = volumes.cells().j(cell);
+  c.value(i, j) = c.mass(i, j) > 0 ? std::min(c.mass(i, j) / std::max(volume(i, j), 1e-6f), highest) : 0.0f;
 }
 
 // Values of the cells that are not full, from mass and volume; one for each cluster.
@@ -225,8 +236,8 @@ void Smoke::Impl::fillMargins(Channel& c, Axis axis) {
   }
 }
 
-// Shares the mass of each cluster out among its cells by their open area.
-void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
+// Shares the mass of each cluster out among its cells by their open area, as its volume has been.
+void Smoke::Impl::endClusters(Channel& c, const Boundary& b, float highest) {
   const SmokeCells& cells = volumes.cells();
   const CellClusters& clusters = volumes.clusters();
   const Quantum q = c.quantum;
@@ -239,25 +250,23 @@ void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
       v += b.volume(i, j);
       if (b.volume(i, j) > b.volume(cells.i(largest), cells.j(largest))) largest = *cell;
     }
-    const double value = v > 0 ? m / v : 0;
+    const double value = m / std::max(volumes.clusterCarried(k), 1e-6);
     double rest = m;
     for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
       const int i = cells.i(*cell), j = cells.j(*cell);
-      const double part = std::floor(value * b.volume(i, j) * q.inverse) * q.size;
+      const double part = std::floor(m * (b.volume(i, j) / v) * q.inverse) * q.size;
       rest -= part;
       c.mass(i, j) = static_cast<float>(part);
-      c.value(i, j) = b.volume(i, j) > 0 ? static_cast<float>(value) : 0.0f;
+      c.value(i, j) = std::min(static_cast<float>(value), highest);
       if (m > 0) touch(c, *cell);
     }
     c.mass(cells.i(largest), cells.j(largest)) += static_cast<float>(rest);
-    c.highest = std::max(c.highest, static_cast<float>(value));
+    c.highest = std::max(c.highest, std::min(static_cast<float>(value), highest));
   }
 }
 
 Smoke::Smoke(const Boundary& boundary, ThreadPool& pool, int channels)
-    : impl_(std::make_unique<Impl>(boundary, pool, channels)) {
-  impl_->lastVolume = boundary.volume;
-}
+    : impl_(std::make_unique<Impl>(boundary, pool, channels)) {}
 
 Smoke::~Smoke() = default;
 
@@ -274,16 +283,17 @@ void Smoke::add(const Boundary& boundary, int channel, const Field& share, doubl
   const double inverse = c.quantum.inverse, size = c.quantum.size;
   double added = 0;
   for (int j = 0; j < c.mass.ny(); ++j) {
-    const float *part = share.row(j), *open = boundary.volume.row(j);
+    const float *part = share.row(j), *carried = s.volumes.carried().row(j);
+    const float *was = s.volumes.openShare().row(j), *open = boundary.volume.row(j);
     float *m = c.mass.row(j), *value = c.value.row(j);
     for (int i = 0; i < c.mass.nx(); ++i) {
-      if (!(part[i] > 0) || !(open[i] > 0)) continue;
-      const double wanted = amount * part[i] * open[i] * inverse;
-      double more = (open[i] < kSliver ? std::floor(wanted) : std::floor(wanted + 0.5)) * size;
+      if (!(part[i] > 0) || !(open[i] > 0) || !(was[i] > 0)) continue;
+      const double wanted = amount * part[i] * carried[i] * inverse;
+      double more = (carried[i] < kSliver ? std::floor(wanted) : std::floor(wanted + 0.5)) * size;
       if (m[i] + more < 0) more = -m[i];
       m[i] = static_cast<float>(m[i] + more);
       added += more;
-      value[i] = m[i] / open[i];
+      value[i] = m[i] / carried[i];
       c.highest = std::max(c.highest, value[i]);
       c.active.at(i / Activity::kStrip, j) = 1;
     }
@@ -296,19 +306,14 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
   SmokeVolumes& volumes = s.volumes;
   volumes.prepare(b, u, v, dt, s.pool);
   const SmokeCells& cells = volumes.cells();
-  for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest);
-  if (volumes.moved()) s.release(b);
+  for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest * volumes.mostCarried());
 
   Field& start = volumes.start();
   for (int k = 0; k < channels(); ++k) {
     Channel& c = s.channels[k];
     if (volumes.moved()) {
-      s.begin(k);
-      auto renew = [&](int cell) {
-        const int i = cells.i(cell), j = cells.j(cell);
-        c.value(i, j) = c.mass(i, j) > 0 ? c.mass(i, j) / std::max(start(i, j), 1e-6f) : 0.0f;
-      };
-      for (int cell : volumes.nodes()) renew(cell);
+      s.move(k, volumes.plan().handedOver());
+      for (int cell : volumes.nodes()) s.renew(c, cell, start, c.highest);
     }
     s.shareValues(c, start);
   }
@@ -322,8 +327,11 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
     const bool last = pass == passes - 1, periodic = alongY ? cells.periodicY : cells.periodicX;
     Field& volume = pass == 0 ? start : pass % 2 ? s.volumeA : s.volumeB;
     Field& next = pass % 2 ? s.volumeB : s.volumeA;
-    if (!last) volumes.advance(axis, volume, next, s.pool);
     if (periodic) wrapMargin(volume, axis, cells.nx, cells.ny, false);
+    if (!last)
+      volumes.advance(axis, volume, next, s.pool);
+    else
+      volumes.settle(b, axis, volume);
     for (int k = 0; k < channels(); ++k) {
       Channel& c = s.channels[k];
       if (c.highest == 0) continue;
@@ -360,15 +368,22 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
       } else {
         const float before = c.highest;
         c.highest = result.highest;
-        s.endClusters(c, b);
+        s.endClusters(c, b, before);
+        if (volumes.carries() && !volumes.plan().exchanged().empty()) {
+          s.move(k, volumes.plan().exchanged());
+          for (const SmokeTransfer& t : volumes.plan().exchanged()) {
+            s.renew(c, t.from, volumes.carried(), before);
+            s.renew(c, t.to, volumes.carried(), before);
+          }
+        }
         if (c.highest > before)
-          c.highest = s.spread.run(cells, b, before, c.quantum, c.mass, c.value, c.active);
+          c.highest = s.spread.run(cells, b, volumes.carried(), before, c.quantum, c.mass, c.value, c.active);
       }
     }
   }
   s.yFirst = !s.yFirst;
-  if (volumes.moved()) s.lastVolume = b.volume;
   volumes.finish(b);
+  if (volumes.moved() && !s.trapped.empty()) s.release(b);
 }
 
 Smoke::Totals Smoke::totals() const {
@@ -387,7 +402,7 @@ Smoke::Totals Smoke::totals() const {
     totals.emitted += c.emitted;
     totals.left += c.left;
     for (int j = 0; j < c.mass.ny(); ++j) {
-      const float *r = c.value.row(j), *open = s.lastVolume.row(j);
+      const float *r = c.value.row(j), *open = s.volumes.openShare().row(j);
       for (int i = 0; i < c.mass.nx(); ++i) {
         if (!(open[i] > 0)) continue;
         totals.min = any ? std::min(totals.min, static_cast<double>(r[i])) : r[i];
@@ -407,7 +422,7 @@ std::size_t Smoke::bytes() const {
   const Impl& s = *impl_;
   std::size_t sum = s.volumes.bytes() + s.sweeper.bytes() + s.spread.bytes();
   for (const Channel& c : s.channels) sum += c.mass.bytes() + c.value.bytes();
-  for (const Field* f : {&s.massOut, &s.valueOut, &s.volumeA, &s.volumeB, &s.lastVolume})
+  for (const Field* f : {&s.massOut, &s.valueOut, &s.volumeA, &s.volumeB})
     if (!f->empty()) sum += f->bytes();
   return sum;
 }

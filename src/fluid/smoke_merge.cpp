@@ -297,7 +297,7 @@ void IrregularFaces::collect(const SmokeCells& cells, Axis axis) {
 }
 
 void IrregularFaces::find(const SmokeCells& cells, const Boundary& b, const Field& before,
-                          std::vector<int>& cut) {
+                          const Field& carried, std::vector<int>& cut) {
   cut.clear();
   const int nx = cells.nx, ny = cells.ny;
   const std::size_t size = static_cast<std::size_t>(markStride(cells)) * (ny + 3);
@@ -305,15 +305,16 @@ void IrregularFaces::find(const SmokeCells& cells, const Boundary& b, const Fiel
   marksY_.assign(size, 0);
   for (int j = 0; j < ny; ++j) {
     const float *now = b.volume.row(j), *was = before.row(j), *x = b.openX.row(j), *y = b.openY.row(j);
+    const float* has = carried.row(j);
     const bool yCounts = j > 0 || cells.periodicY;
     for (int first = 0; first < nx; first += 16) {
       const int last = std::min(nx, first + 16);
       float least = 1;
       for (int i = first; i < last; ++i)
-        least = std::min({least, now[i], was[i], x[i], yCounts ? y[i] : 1.0f});
+        least = std::min({least, now[i], was[i], x[i], yCounts ? y[i] : 1.0f, has[i], 2 - has[i]});
       if (least >= 1) continue;
       for (int i = first; i < last; ++i) {
-        if (now[i] < 1 || was[i] < 1) {
+        if (now[i] < 1 || was[i] < 1 || has[i] != 1) {
           cut.push_back(cells.cell(i, j));
           mark(cells, Axis::x, i, j, -2, 3);
           mark(cells, Axis::y, i, j, -2, 3);

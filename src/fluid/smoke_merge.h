@@ -52,9 +52,10 @@ class CellClusters {
 /// fractions change.
 class IrregularFaces {
  public:
-  /// Cells whose open share is not 1 in one of the two fields, in order, into `cut`; and the faces around
-  /// them.
-  void find(const SmokeCells& cells, const Boundary& boundary, const Field& before, std::vector<int>& cut);
+  /// Cells whose open share is not 1 now or was not before, or that carry another volume than 1, in order,
+  /// into `cut`; and the faces around them.
+  void find(const SmokeCells& cells, const Boundary& boundary, const Field& before, const Field& carried,
+            std::vector<int>& cut);
   /// Decides which stencil each face takes.
   void choose(const SmokeCells& cells, const Boundary& boundary, const CellClusters& clusters);
   const RowList<IrregularFace>& faces(Axis axis) const { return axis == Axis::x ? x_ : y_; }

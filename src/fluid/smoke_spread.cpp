@@ -8,14 +8,14 @@ namespace {
 constexpr int kReach = 60;  // cells looked at around one
 }
 
-float MassSpread::run(const SmokeCells& cells, const Boundary& b, float highest, Quantum q, Field& mass,
-                      Field& value, Activity& active) {
+float MassSpread::run(const SmokeCells& cells, const Boundary& b, const Field& volume, float highest,
+                      Quantum q, Field& mass, Field& value, Activity& active) {
   const std::size_t count = static_cast<std::size_t>(cells.nx) * cells.ny;
   seen_.resize(count, 0);
   // The whole search is bounded: where a large region is over-full, looking for room is in vain.
   long budget = static_cast<long>(count) / 2 + 1000;
   float most = highest;
-  auto holds = [&](int i, int j) { return std::floor(highest * b.volume(i, j) * q.inverse) * q.size; };
+  auto holds = [&](int i, int j) { return std::floor(highest * volume(i, j) * q.inverse) * q.size; };
   for (int j = 0; j < cells.ny; ++j) {
     const float* row = value.row(j);
     for (int first = 0; first < cells.nx; first += 16) {
@@ -44,13 +44,12 @@ float MassSpread::run(const SmokeCells& cells, const Boundary& b, float highest,
             if (!(moved > 0)) continue;
             excess -= moved;
             mass(x, y) += moved;
-            value(x, y) = std::min(highest, mass(x, y) / b.volume(x, y));
+            value(x, y) = std::min(highest, mass(x, y) / volume(x, y));
             active.at(x / Activity::kStrip, y) = 1;
           }
         }
         mass(i, j) -= before - excess;
-        value(i, j) =
-            excess > 0 ? mass(i, j) / b.volume(i, j) : std::min(highest, mass(i, j) / b.volume(i, j));
+        value(i, j) = excess > 0 ? mass(i, j) / volume(i, j) : std::min(highest, mass(i, j) / volume(i, j));
         most = std::max(most, value(i, j));
       }
     }

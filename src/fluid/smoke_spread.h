@@ -13,8 +13,9 @@ class MassSpread {
  public:
   /// Returns the largest value afterwards: `highest`, or more where the neighbourhood is full (a pocket that
   /// is squeezed).
-  float run(const SmokeCells& cells, const Boundary& boundary, float highest, Quantum quantum, Field& mass,
-            Field& value, Activity& active);
+  /// `volume`: what the cells carry.
+  float run(const SmokeCells& cells, const Boundary& boundary, const Field& volume, float highest,
+            Quantum quantum, Field& mass, Field& value, Activity& active);
   std::size_t bytes() const { return (seen_.capacity() + queue_.capacity()) * sizeof(int); }
 
  private:

@@ -5,35 +5,84 @@
 namespace smokebox {
 namespace {
 constexpr float kTolerance = 1e-6f;
-constexpr int kReachOfClosed = 128;  // cells looked at
-constexpr int kReachOfExcess = 40, kFarReach = 800;
-constexpr float kAlmostFull = 0.5f;  // open share of a cell that a thick solid is about to fill
-constexpr int kReachOfDeficit = 12;
+constexpr int kReachOfClosed = 128;              // cells looked at
+constexpr int kReachOfPairs[] = {4, 12, 40};     // of cells that close
+constexpr int kReachOfExchange[] = {4, 12, 40};  // the nearest partners first
+constexpr float kMostTaken = 0.95f;              // of what a cell carries
+constexpr int kWindow = 2;                       // cells to either side in which two sides are told apart
+
+float volumeOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c) {
+  return (*geometry.volume)(cells.i(c), cells.j(c));
+}
+
+float openOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c, int face) {
+  return cells.atFace(*geometry.openX, *geometry.openY, c, face);
+}
+
+// Cells by their place in the window around one, of which some are never cut and so keep their side.
+struct Window {
+  static constexpr int kSize = 2 * kWindow + 1;
+  std::uint32_t reached = 0, anchors = 0;
+
+  void fill(const SmokeCells& cells, int from, const SmokeGeometry& through, const SmokeGeometry& before,
+            const SmokeGeometry& after) {
+    struct Place {
+      int cell, x, y;
+    };
+    Place queue[kSize * kSize] = {{from, kWindow, kWindow}};
+    int count = 1;
+    reached = bit(kWindow, kWindow);
+    for (int head = 0; head < count; ++head) {
+      const Place p = queue[head];
+      if (volumeOf(cells, before, p.cell) == 1 && volumeOf(cells, after, p.cell) == 1)
+        anchors |= bit(p.x, p.y);
+      for (int face = 0; face < 4; ++face) {
+        const int x = p.x + (face == 1) - (face == 0), y = p.y + (face == 3) - (face == 2);
+        if (x < 0 || y < 0 || x >= kSize || y >= kSize || (reached & bit(x, y))) continue;
+        const int next = cells.neighbour(p.cell, face);
+        if (next < 0 || !(openOf(cells, through, p.cell, face) > 0)) continue;
+        reached |= bit(x, y);
+        queue[count++] = {next, x, y};
+      }
+    }
+  }
+  static std::uint32_t bit(int x, int y) { return 1u << (y * kSize + x); }
+};
 }  // namespace
 
 std::size_t TransferPlan::bytes() const {
-  return transfers_.capacity() * sizeof(SmokeTransfer) +
+  return (handed_.capacity() + exchanged_.capacity()) * sizeof(SmokeTransfer) + passed_.capacity() +
          (excess_.capacity() + content_.capacity()) * sizeof(float) +
-         (seen_.capacity() + cameFrom_.capacity() + found_.capacity()) * sizeof(int);
+         (seen_.capacity() + cameFrom_.capacity() + found_.capacity() + path_.capacity()) * sizeof(int);
 }
 
-void TransferPlan::search(const SmokeCells& cells, int from, Through through, const SmokeGeometry& before,
-                          const SmokeGeometry& after, int most) {
+void TransferPlan::clear() {
+  handed_.clear();
+  exchanged_.clear();
+}
+
+void TransferPlan::reserve(const SmokeCells& cells) {
+  if (seen_.size() == cells.count()) return;
+  excess_.assign(cells.count(), 0);
+  content_.assign(cells.count(), 1);
+  passed_.assign(cells.count(), 0);
+  seen_.assign(cells.count(), 0);
+  cameFrom_.assign(cells.count(), 0);
+}
+
+void TransferPlan::search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most) {
   found_.clear();
   ++search_;
   seen_[from] = search_;
   found_.push_back(from);
   for (std::size_t head = 0; head < found_.size() && static_cast<int>(found_.size()) <= most; ++head) {
-    const int cell = found_[head], i = cells.i(cell), j = cells.j(cell);
+    const int cell = found_[head];
     for (int face = 0; face < 4; ++face) {
-      const bool passes =
-          through == Through::all || SmokeCells::atFace(*after.openX, *after.openY, i, j, face) > 0 ||
-          (through == Through::either && SmokeCells::atFace(*before.openX, *before.openY, i, j, face) > 0);
-      if (!passes) continue;
+      if (geometry && !(openOf(cells, *geometry, cell, face) > 0)) continue;
       const int next = cells.neighbour(cell, face);
       if (next < 0 || seen_[next] == search_) continue;
       seen_[next] = search_;
-      cameFrom_[next] = 4 * cell + face;
+      cameFrom_[next] = cell;
       found_.push_back(next);
     }
   }
@@ -41,10 +90,9 @@ void TransferPlan::search(const SmokeCells& cells, int from, Through through, co
 }
 
 int TransferPlan::nearestOpen(const SmokeCells& cells, const Field& volume, int from) {
-  seen_.resize(static_cast<std::size_t>(cells.nx) * cells.ny, 0);
-  cameFrom_.resize(seen_.size(), 0);
+  reserve(cells);
   if (volume(cells.i(from), cells.j(from)) > 0) return from;
-  search(cells, from, Through::all, {}, {}, kReachOfClosed);
+  search(cells, from, nullptr, kReachOfClosed);
   for (int cell : found_)
     if (volume(cells.i(cell), cells.j(cell)) > 0) return cell;
   return -1;
@@ -52,8 +100,7 @@ int TransferPlan::nearestOpen(const SmokeCells& cells, const Field& volume, int 
 
 // Moves a volume and notes which share of the smoke goes with it.
 void TransferPlan::give(int from, int to, float volume, bool all) {
-  const float share = all ? 1.0f : std::min(1.0f, volume / content_[from]);
-  transfers_.push_back({from, to, share});
+  handed_.push_back({from, to, all ? 1.0f : std::min(1.0f, volume / content_[from])});
   content_[from] -= volume;
   excess_[from] -= volume;
   if (to < 0) return;
@@ -61,126 +108,152 @@ void TransferPlan::give(int from, int to, float volume, bool all) {
   excess_[to] += volume;
 }
 
-// Sends a volume along the path that the last search, which began at `from`, took to `to`.
-void TransferPlan::route(const SmokeCells& cells, int from, int to, float volume, Field& courantX,
-                         Field& courantY) {
-  excess_[from] -= volume;
-  excess_[to] += volume;
-  for (int cell = to; cell != from;) {
-    const int last = cameFrom_[cell] / 4, face = cameFrom_[cell] % 4, i = cells.i(last), j = cells.j(last);
-    float& flow = SmokeCells::atFace(courantX, courantY, i, j, face);
-    flow += outwards(face) * volume;
-    // The two copies of a periodic side's faces agree.
-    if (cells.periodicX && face == 0 && i == 0) courantX(cells.nx, j) = flow;
-    if (cells.periodicX && face == 1 && i == cells.nx - 1) courantX(0, j) = flow;
-    if (cells.periodicY && face == 2 && j == 0) courantY(i, cells.ny) = flow;
-    if (cells.periodicY && face == 3 && j == cells.ny - 1) courantY(i, 0) = flow;
-    cell = last;
+// Whether the part of a cell that counts as open has changed from one side of a thin wall to the other: the
+// cells that are never cut and that it is connected with near by are others now.
+bool TransferPlan::passed(const SmokeCells& cells, int c, const SmokeGeometry& before,
+                          const SmokeGeometry& after) {
+  bool was = false, is = false, both = false;
+  for (int face = 0; face < 4; ++face) {
+    const int next = cells.neighbour(c, face);
+    if (next < 0) continue;
+    const bool wasOpen = openOf(cells, before, c, face) > 0, isOpen = openOf(cells, after, c, face) > 0;
+    if (wasOpen && isOpen && volumeOf(cells, before, next) == 1 && volumeOf(cells, after, next) == 1)
+      return false;
+    was |= wasOpen;
+    is |= isOpen;
+    both |= wasOpen && isOpen;
   }
+  if (!was || !is) return false;
+  Window old, now;
+  old.fill(cells, c, before, before, after);
+  now.fill(cells, c, after, before, after);
+  return old.anchors && now.anchors ? (old.anchors & now.anchors) == 0 : !both;
 }
 
-void TransferPlan::plan(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-                        const SmokeGeometry& after, Field& courantX, Field& courantY, Field& start) {
-  const std::size_t count = static_cast<std::size_t>(cells.nx) * cells.ny;
-  excess_.resize(count, 0);
-  content_.resize(count, 1);
-  seen_.resize(count, 0);
-  cameFrom_.resize(count, 0);
-  transfers_.clear();
-  auto volumeBefore = [&](int c) { return (*before.volume)(cells.i(c), cells.j(c)); };
-  auto volumeAfter = [&](int c) { return (*after.volume)(cells.i(c), cells.j(c)); };
-
+void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
+                            const SmokeGeometry& after, const Field& courantX, const Field& courantY,
+                            Field& carried) {
+  reserve(cells);
+  handed_.clear();
   for (int c : cut) {
     float net = 0;
     for (int face = 0; face < 4; ++face) net += outwards(face) * cells.atFace(courantX, courantY, c, face);
-    content_[c] = volumeBefore(c);
-    excess_[c] = volumeBefore(c) - net - volumeAfter(c);
+    content_[c] = volumeOf(cells, before, c) > 0 ? carried(cells.i(c), cells.j(c)) : 0.0f;
+    excess_[c] = content_[c] - net - volumeOf(cells, after, c);
+    const bool stays = volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) > 0;
+    passed_[c] = stays && passed(cells, c, before, after);
   }
 
-  // A thin wall has passed from one side of a cell to the other: its content goes on ahead of the wall.
   for (int c : cut) {
-    if (!(volumeBefore(c) > 0 && volumeAfter(c) > 0)) continue;
-    int shutTo = -1;
-    bool opened = false;
-    for (int face = 0; face < 4; ++face) {
-      const float was = cells.atFace(*before.openX, *before.openY, c, face);
-      const float is = cells.atFace(*after.openX, *after.openY, c, face);
-      const int next = cells.neighbour(c, face);
-      if (next < 0) continue;
-      if (was == 0 && is > 0) opened = true;
-      if (was > 0 && is == 0 && volumeAfter(next) > 0 &&
-          (shutTo < 0 || volumeAfter(next) > volumeAfter(shutTo)))
-        shutTo = next;
-    }
-    if (opened && shutTo >= 0) give(c, shutTo, content_[c], true);
-  }
-
-  // Cells that close hand on everything.
-  for (int c : cut) {
-    if (volumeAfter(c) > 0 || volumeBefore(c) <= 0) continue;
-    search(cells, c, Through::either, before, after, kReachOfClosed);
+    const bool closes = volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) <= 0;
+    if (!closes && !passed_[c]) continue;
+    auto takes = [&](int other) { return volumeOf(cells, after, other) > 0 && !passed_[other]; };
     int nearest = -1;
-    for (int other : found_) {
-      if (volumeAfter(other) <= 0) continue;
-      if (nearest < 0) nearest = other;
-      const float moved = std::min(excess_[c], -excess_[other]);
-      if (moved > kTolerance) give(c, other, moved, false);
-      if (excess_[c] <= kTolerance) break;
+    for (int reach : kReachOfPairs) {
+      search(cells, c, &before, reach);
+      for (int other : found_) {
+        if (content_[c] <= kTolerance) break;
+        if (!takes(other)) continue;
+        if (nearest < 0) nearest = other;
+        const float moved = std::min(content_[c], -excess_[other]);
+        if (moved > kTolerance) give(c, other, moved, false);
+      }
+      if (content_[c] <= kTolerance && nearest >= 0) break;
     }
-    if (nearest < 0) nearest = nearestOpen(cells, *after.volume, c);
+    if (nearest < 0) {
+      search(cells, c, &before, kReachOfClosed);
+      for (int other : found_)
+        if (nearest < 0 && takes(other)) nearest = other;
+    }
+    if (nearest < 0) {
+      if (passed_[c]) continue;
+      nearest = nearestOpen(cells, *after.volume, c);
+    }
     // The rest, be it none: what is left of the smoke must not stay.
     give(c, nearest, std::max(content_[c], 0.0f), true);
   }
 
-  // Open cells that would end with too much: correct the fluxes along the way to the nearest that lack some.
-  for (const int reach : {kReachOfExcess, kFarReach})
-    for (int c : cut) {
-      if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance) continue;
-      search(cells, c, Through::after, before, after, reach);
-      for (int other : found_) {
-        const float moved = std::min(excess_[c], -excess_[other]);
-        if (volumeAfter(other) > 0 && moved > kTolerance) route(cells, c, other, moved, courantX, courantY);
-        if (excess_[c] <= kTolerance) break;
-      }
-    }
-  // One that the solid has almost filled and shut in may reach back through faces that were open before.
-  for (int c : cut) {
-    if (volumeAfter(c) <= 0 || excess_[c] <= kTolerance || volumeAfter(c) > kAlmostFull) continue;
-    search(cells, c, Through::either, before, after, kReachOfExcess);
-    for (int other : found_) {
-      const float moved = std::min({excess_[c], -excess_[other], 0.99f * content_[c]});
-      if (volumeAfter(other) > 0 && moved > kTolerance) give(c, other, moved, false);
-      if (excess_[c] <= kTolerance) break;
-    }
-  }
-  // A cell that would end with less than half of its volume draws on others.
-  for (int c : cut) {
-    float lacks = -0.5f * volumeAfter(c) - excess_[c];
-    if (volumeAfter(c) <= 0 || lacks <= kTolerance) continue;
-    search(cells, c, Through::after, before, after, kReachOfDeficit);
-    for (int other : found_) {
-      const float moved = std::min(lacks, excess_[other] + 0.5f * volumeAfter(other));
-      if (volumeAfter(other) <= 0 || moved <= kTolerance) continue;
-      route(cells, c, other, -moved, courantX, courantY);
-      lacks -= moved;
-      if (lacks <= kTolerance) break;
-    }
-  }
-
-  // Back to a clean slate for the next step; cells off the list may have been drawn on.
+  // Back to a clean slate; cells off the list may have been given something.
   auto settle = [&](int c) {
     if (c < 0) return;
-    start(cells.i(c), cells.j(c)) = volumeAfter(c) > 0 ? std::max(content_[c], kTolerance) : 1.0f;
+    carried(cells.i(c), cells.j(c)) =
+        volumeOf(cells, after, c) > 0 ? std::max(content_[c], kTolerance) : 1.0f;
   };
   for (int c : cut) settle(c);
-  for (const SmokeTransfer& t : transfers_) settle(t.from), settle(t.to);
+  for (const SmokeTransfer& t : handed_) settle(t.to);
   auto forget = [&](int c) {
     if (c < 0) return;
     excess_[c] = 0;
     content_[c] = 1;
+    passed_[c] = 0;
   };
   for (int c : cut) forget(c);
-  for (const SmokeTransfer& t : transfers_) forget(t.from), forget(t.to);
+  for (const SmokeTransfer& t : handed_) forget(t.to);
+}
+
+// Sends a volume along the path that the last search, which began at `to`, took to `from`: each cell on the
+// way passes on what it has, so that smoke moves by one cell rather than by the whole way.
+void TransferPlan::send(int from, int to, float volume) {
+  path_.clear();
+  for (int c = from; c != to; c = cameFrom_[c]) path_.push_back(c);
+  int last = to;
+  for (int k = static_cast<int>(path_.size()) - 1; k >= 0; --k) {
+    const int c = path_[k];
+    if (k > 0 && content_[c] < 1.5f * volume) continue;
+    exchanged_.push_back({c, last, std::min(1.0f, volume / content_[c])});
+    last = c;
+  }
+  content_[from] -= volume;
+  excess_[from] -= volume;
+  content_[to] += volume;
+  excess_[to] += volume;
+}
+
+void TransferPlan::exchange(const SmokeCells& cells, const std::vector<int>& nodes,
+                            const SmokeGeometry& after, Field& carried) {
+  reserve(cells);
+  exchanged_.clear();
+  for (int c : nodes) {
+    const float open = volumeOf(cells, after, c);
+    if (!(open > 0)) continue;
+    content_[c] = carried(cells.i(c), cells.j(c));
+    excess_[c] = content_[c] - open;
+  }
+  for (int reach : kReachOfExchange)
+    for (int c : nodes) {
+      if (volumeOf(cells, after, c) <= 0 || -excess_[c] <= kTolerance) continue;
+      search(cells, c, &after, reach);
+      for (int other : found_) {
+        if (volumeOf(cells, after, other) <= 0) continue;
+        const float moved = std::min({-excess_[c], excess_[other], kMostTaken * content_[other]});
+        if (moved > kTolerance) send(other, c, moved);
+        if (-excess_[c] <= kTolerance) break;
+      }
+    }
+  // A cell that carries less than half of what it holds draws on others.
+  for (int c : nodes) {
+    const float half = 0.5f * volumeOf(cells, after, c);
+    if (half <= 0 || half - content_[c] <= kTolerance) continue;
+    search(cells, c, &after, kReachOfExchange[1]);
+    for (int other : found_) {
+      const float moved =
+          std::min(half - content_[c], content_[other] - 0.5f * volumeOf(cells, after, other));
+      if (volumeOf(cells, after, other) > 0 && moved > kTolerance) send(other, c, moved);
+      if (half - content_[c] <= kTolerance) break;
+    }
+  }
+  auto settle = [&](int c) {
+    const float open = volumeOf(cells, after, c);
+    if (open > 0) carried(cells.i(c), cells.j(c)) = std::max(content_[c], kTolerance);
+  };
+  for (int c : nodes) settle(c);
+  for (const SmokeTransfer& t : exchanged_) settle(t.from), settle(t.to);
+  auto forget = [&](int c) {
+    excess_[c] = 0;
+    content_[c] = 1;
+  };
+  for (int c : nodes) forget(c);
+  for (const SmokeTransfer& t : exchanged_) forget(t.from), forget(t.to);
 }
 
 }  // namespace smokebox

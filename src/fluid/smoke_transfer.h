@@ -1,11 +1,16 @@
-// What moves from cell to cell because solids moved, before the smoke is swept along with the fluid.
+// What moves from cell to cell because solids moved.
 //
-// The fluxes of a step change the volume of fluid in a cell by minus their net sum; the solids change it from
-// the old open share to the new one. The two agree over a neighbourhood but not in each cell. Here volume
-// goes, with the smoke in it, from cells that would end with too much to cells near by that would end with
-// too little, and a cell that closes hands on all that it has: to cells that it was connected with if there
-// are any, then to the nearest open one.
+// Each cell near a solid carries a volume beside its smoke: what the fluxes of the steps so far left in it.
+// It follows the open share of the cell, but not exactly, since fluxes are those of one moment and the solid
+// moves on through the step. Before the sweeps a cell that closes hands all it has to cells that it was
+// connected with, and so does one that a thin wall has passed (the part of it that counts as open is now on
+// the wall's other side). After the sweeps volume goes, with the smoke in it, from cells that carry too much
+// to cells near by that carry too little. Volume and smoke always go together, so a uniform field stays
+// uniform and no value leaves its bounds; what finds no partner near by is carried on.
+//
+// Limits: a thin wall that passes a whole cell in one step passes its smoke as well.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "fluid/smoke_cells.h"
@@ -23,28 +28,38 @@ struct SmokeGeometry {
 
 class TransferPlan {
  public:
-  /// `cut`: cells whose share differs from 1 before or after. `start`: open shares before, changed to what
-  /// the sweeps start with. Courant numbers as in SweepJob, for the whole step.
-  void plan(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-            const SmokeGeometry& after, Field& courantX, Field& courantY, Field& start);
-  const std::vector<SmokeTransfer>& transfers() const { return transfers_; }
-  void clear() { transfers_.clear(); }
+  /// Before the sweeps. `cut`: cells whose share differs from 1 before or after, or that carry more or less
+  /// than they hold. `carried`: changed to what the sweeps start with (1 in closed cells). Courant numbers as
+  /// in SweepJob, for the whole step.
+  void handOver(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
+                const SmokeGeometry& after, const Field& courantX, const Field& courantY, Field& carried);
+  const std::vector<SmokeTransfer>& handedOver() const { return handed_; }
+
+  /// After the sweeps, which left the volumes `carried` in the cells `nodes`; others have what they hold.
+  void exchange(const SmokeCells& cells, const std::vector<int>& nodes, const SmokeGeometry& after,
+                Field& carried);
+  const std::vector<SmokeTransfer>& exchanged() const { return exchanged_; }
+
+  void clear();
   std::size_t bytes() const;
 
   /// Nearest open cell by steps between neighbours, whatever lies between; -1 if there is none in reach.
   int nearestOpen(const SmokeCells& cells, const Field& volume, int from);
 
  private:
-  enum class Through { after, either, all };
-  /// Cells by distance from `from`, not itself, at most `most`, into found_.
-  void search(const SmokeCells& cells, int from, Through through, const SmokeGeometry& before,
-              const SmokeGeometry& after, int most);
-  void route(const SmokeCells& cells, int from, int to, float volume, Field& courantX, Field& courantY);
+  void reserve(const SmokeCells& cells);
+  /// Cells by distance from `from`, not itself, at most `most`, into found_; through the faces that are open
+  /// in `geometry`, or through all.
+  void search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most);
+  bool passed(const SmokeCells& cells, int cell, const SmokeGeometry& before, const SmokeGeometry& after);
   void give(int from, int to, float volume, bool all);
+  void send(int from, int to, float volume);
 
-  std::vector<SmokeTransfer> transfers_;
-  std::vector<float> excess_, content_;       // by cell; excess is 0 outside the list
-  std::vector<int> seen_, found_, cameFrom_;  // cameFrom_: by cell, 4 times the cell before it, plus the face
+  std::vector<SmokeTransfer> handed_, exchanged_;
+  std::vector<float> excess_, content_;       // by cell; 0 and 1 outside the list
+  std::vector<std::uint8_t> passed_;          // by cell: a thin wall has passed it in this step
+  std::vector<int> seen_, found_, cameFrom_;  // cameFrom_: by cell, the cell before it
+  std::vector<int> path_;
   int search_ = 0;
 };
 

@@ -14,6 +14,8 @@ constexpr float kMostOut = 0.95f;  // as in smoke_merge.cpp
 constexpr float kLargest = 4096;   // cells per step; faster ones, infinities and NaNs count as 0
 constexpr float kLeastVolume =
     0.1f;  // of a full cell after the step; cells with less are looked after one by one
+// What a cell may carry too much or too little of what it holds and yet be settled: the flow's divergence.
+constexpr float kSettled = 2e-6f, kSettledAtRest = 1e-5f;
 }  // namespace
 
 void wrapMargin(Field& f, Axis axis, int nx, int ny, bool faces) {
@@ -50,8 +52,8 @@ SmokeVolumes::SmokeVolumes(const Boundary& b)
 }
 
 std::size_t SmokeVolumes::bytes() const {
-  std::size_t sum = (cut_.capacity() + nodes_.capacity()) * sizeof(int) + listed_.capacity() + plan_.bytes() +
-                    clusters_.bytes() + irregular_.bytes();
+  std::size_t sum = (cut_.capacity() + nodes_.capacity() + exchanging_.capacity()) * sizeof(int) +
+                    listed_.capacity() + plan_.bytes() + clusters_.bytes() + irregular_.bytes();
   for (const Field* f :
        {&courantX_, &courantY_, &start_, &measure_, &openXBefore_, &openYBefore_, &volumeBefore_})
     if (!f->empty()) sum += f->bytes();
@@ -133,7 +135,7 @@ void SmokeVolumes::listNodes() {
   nodes_ = cut_;
   bool drained = false;
   for (int j = 0; j < cells_.ny; ++j) drained |= drained_[j] > 1 - kLeastVolume;
-  if (plan_.transfers().empty() && !drained) return;
+  if (plan_.handedOver().empty() && !drained) return;
   listed_.resize(cells_.count(), 0);
   for (int c : cut_) listed_[c] = 1;
   auto add = [&](int c) {
@@ -141,7 +143,7 @@ void SmokeVolumes::listNodes() {
     listed_[c] = 1;
     nodes_.push_back(c);
   };
-  for (const SmokeTransfer& t : plan_.transfers()) add(t.from), add(t.to);
+  for (const SmokeTransfer& t : plan_.handedOver()) add(t.from), add(t.to);
   // A velocity that is far from free of divergence would empty a cell.
   for (int j = 0; j < cells_.ny; ++j)
     for (int i = 0; drained_[j] > 1 - kLeastVolume && i < cells_.nx; ++i)
@@ -152,13 +154,8 @@ void SmokeVolumes::listNodes() {
 
 void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, double dt, ThreadPool& pool) {
   moved_ = b.version != version_;
-  if (moved_ || stale_) irregular_.find(cells_, b, volumeBefore_, cut_);
-  stale_ = moved_;
-  for (int c : cut_) {
-    const int i = cells_.i(c), j = cells_.j(c);
-    const float share = moved_ ? volumeBefore_(i, j) : b.volume(i, j);
-    start_(i, j) = share > 0 ? share : 1.0f;
-  }
+  if (carries() || stale_) irregular_.find(cells_, b, volumeBefore_, start_, cut_);
+  stale_ = carries();
   const float parts = flows(b, u, v, dt, pool);
   float full = std::max(1.0f, parts);
   if (full > kMostParts) {
@@ -168,9 +165,11 @@ void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, do
   parts_ = static_cast<int>(std::ceil(full));
   plan_.clear();
   if (moved_)
-    plan_.plan(cells_, cut_, {&openXBefore_, &openYBefore_, &volumeBefore_}, {&b.openX, &b.openY, &b.volume},
-               courantX_, courantY_, start_);
+    plan_.handOver(cells_, cut_, {&openXBefore_, &openYBefore_, &volumeBefore_},
+                   {&b.openX, &b.openY, &b.volume}, courantX_, courantY_, start_);
   listNodes();
+  mostCarried_ = 1;
+  for (int c : nodes_) mostCarried_ = std::max(mostCarried_, start_(cells_.i(c), cells_.j(c)));
   if (!nodes_.empty()) {
     // Where the flows cannot be made safe one by one (a velocity that is no solution), all are slowed down.
     const int needed = parts_;
@@ -181,11 +180,6 @@ void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, do
       scale(attempt < kMostAttempts ? 0.25f : 0.0f, pool);
     }
     irregular_.choose(cells_, b, clusters_);
-    if (measure_.empty()) measure_ = Field(cells_.nx, cells_.ny, 1);
-    for (int c : nodes_) measure_(cells_.i(c), cells_.j(c)) = b.volume(cells_.i(c), cells_.j(c));
-    for (int k = 0; k < clusters_.count(); ++k)
-      for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m)
-        measure_(cells_.i(*m), cells_.j(*m)) = 0;
   } else {
     clusters_.clear(cells_);
     irregular_.choose(cells_, b, clusters_);
@@ -195,16 +189,75 @@ void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, do
   if (cells_.periodicY) wrapMargin(courantY_, Axis::y, cells_.nx, cells_.ny, true);
 }
 
-void SmokeVolumes::finish(const Boundary& b) {
-  auto settle = [&](int c) {
-    if (c < 0) return;
+void SmokeVolumes::settle(const Boundary& b, Axis axis, const Field& volume) {
+  looseAfter_ = false;
+  clusterCarried_.assign(clusters_.count(), 0);
+  if (nodes_.empty()) return;
+  if (measure_.empty()) measure_ = Field(cells_.nx, cells_.ny, 1);
+  if (!carries()) {
+    for (int c : nodes_) {
+      const int i = cells_.i(c), j = cells_.j(c);
+      measure_(i, j) = b.volume(i, j);
+      start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
+    }
+    for (int k = 0; k < clusters_.count(); ++k)
+      for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) {
+        const int i = cells_.i(*m), j = cells_.j(*m);
+        clusterCarried_[k] += b.volume(i, j);
+        measure_(i, j) = 0;
+        start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
+      }
+    return;
+  }
+  const Field& flow = courant(axis);
+  const int di = axis == Axis::x, dj = 1 - di;
+  auto after = [&](int i, int j) { return volume(i, j) - (flow(i + di, j + dj) - flow(i, j)); };
+  for (int c : nodes_) {
     const int i = cells_.i(c), j = cells_.j(c);
-    start_(i, j) = b.volume(i, j) > 0 ? b.volume(i, j) : 1.0f;
-    if (!measure_.empty()) measure_(i, j) = b.volume(i, j);
+    const bool open = b.volume(i, j) > 0;
+    start_(i, j) = open ? after(i, j) : 1.0f;
+    measure_(i, j) = open ? start_(i, j) : 0.0f;
+  }
+  // The cells of a cluster share its volume as they share its smoke.
+  for (int k = 0; k < clusters_.count(); ++k) {
+    double carried = 0, open = 0;
+    for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) {
+      const int i = cells_.i(*m), j = cells_.j(*m);
+      carried += after(i, j);
+      open += b.volume(i, j);
+    }
+    clusterCarried_[k] = carried;
+    for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) {
+      const int i = cells_.i(*m), j = cells_.j(*m);
+      start_(i, j) = static_cast<float>(carried * b.volume(i, j) / open);
+      measure_(i, j) = 0;
+    }
+  }
+  exchanging_.assign(nodes_.begin(), nodes_.end());
+  for (int k = 0; k < clusters_.count(); ++k) exchanging_.push_back(*clusters_.begin(k));
+  plan_.exchange(cells_, exchanging_, {&b.openX, &b.openY, &b.volume}, start_);
+}
+
+void SmokeVolumes::finish(const Boundary& b) {
+  auto rest = [&](int c) {
+    const int i = cells_.i(c), j = cells_.j(c);
+    const float open = b.volume(i, j);
+    measure_(i, j) = open;
+    if (!(open > 0)) {
+      start_(i, j) = 1;
+      return;
+    }
+    const float settled = moved_ ? (open == 1 ? kSettled : 0.0f) : kSettledAtRest * open;
+    if (std::fabs(start_(i, j) - open) <= settled) start_(i, j) = open;
+    if (start_(i, j) != open) looseAfter_ = true;
   };
-  for (int c : nodes_) settle(c);
-  for (int k = 0; k < clusters_.count(); ++k)
-    for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) settle(*m);
+  if (carries() && !nodes_.empty()) {
+    for (int c : exchanging_) rest(c);
+    for (int k = 0; k < clusters_.count(); ++k)
+      for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) rest(*m);
+    for (const SmokeTransfer& t : plan_.exchanged()) rest(t.from), rest(t.to);
+  }
+  loose_ = looseAfter_;
   if (moved_) {
     openXBefore_ = b.openX;
     openYBefore_ = b.openY;

@@ -18,9 +18,17 @@ class SmokeVolumes {
 
   explicit SmokeVolumes(const Boundary& boundary);
 
+  /// Volume of smoke and air that each cell carries between steps: its open share as far as the solids'
+  /// motion lets the two agree; 1 in closed cells.
+  const Field& carried() const { return start_; }
+  /// At least as much as any cell starts the sweeps with, and at least 1.
+  float mostCarried() const { return mostCarried_; }
+
   /// Plans one step from the geometry of the last call to boundary's. u, v: free of divergence in the new
   /// geometry.
   void prepare(const Boundary& boundary, const Field& u, const Field& v, double dt, ThreadPool& pool);
+  /// Before the last sweep, which starts with `volume`: what the cells carry afterwards.
+  void settle(const Boundary& boundary, Axis axis, const Field& volume);
   /// The new geometry becomes the old one.
   void finish(const Boundary& boundary);
 
@@ -29,14 +37,22 @@ class SmokeVolumes {
   int parts() const { return parts_; }
   /// Volume through the low face of each cell in one part, in cells; margins filled.
   const Field& courant(Axis axis) const { return axis == Axis::x ? courantX_ : courantY_; }
-  /// Open shares to start with; 1 where a cell stays closed.
+  /// Volumes to start with; 1 where a cell stays closed. settle() changes it to those that the step ends
+  /// with.
   Field& start() { return start_; }
-  /// Open shares at the end; 0 in clusters, whose values are found apart.
+  /// What values are measured by after the last sweep; 0 in clusters, whose values are found apart.
   const Field& measure(const Boundary& boundary) const { return nodes_.empty() ? boundary.volume : measure_; }
+  /// Open shares at the end of the last step.
+  const Field& openShare() const { return volumeBefore_; }
   /// next = volume after a sweep that starts with `volume`.
   void advance(Axis axis, const Field& volume, Field& next, ThreadPool& pool) const;
 
+  /// What cluster k as a whole carries after the last sweep.
+  double clusterCarried(int k) const { return clusterCarried_[k]; }
+
   bool moved() const { return moved_; }
+  /// Solids have moved, or cells still carry more or less than they hold.
+  bool carries() const { return moved_ || loose_; }
   /// Cells that are cut before or after, and those that a transfer touches.
   const std::vector<int>& nodes() const { return nodes_; }
   TransferPlan& plan() { return plan_; }
@@ -52,14 +68,17 @@ class SmokeVolumes {
   SmokeCells cells_;
   Field courantX_, courantY_, start_, measure_;
   Field openXBefore_, openYBefore_, volumeBefore_;
-  std::vector<int> cut_, nodes_;
+  std::vector<int> cut_, nodes_, exchanging_;
   std::vector<std::uint8_t> listed_;  // by cell: is in nodes_; for moving solids only
   TransferPlan plan_;
   CellClusters clusters_;
   IrregularFaces irregular_;
+  std::vector<double> clusterCarried_;
   std::vector<float> drained_;  // by row, largest net outflow from a full cell
   std::uint64_t version_ = 0;
+  float mostCarried_ = 1;
   bool moved_ = false, stale_ = true;
+  bool loose_ = false, looseAfter_ = false;  // some cell carries more or less than it holds
   int parts_ = 1;
 };
 
