@@ -34,11 +34,12 @@ inline float halvings(float x) {
   return part * std::bit_cast<float>((127 - whole) << 23);
 }
 
-/// Colours are weighed by densities, so that where the largest number is none, there is no smoke.
-inline bool emptyRun(const float* values, int count) {
+/// The largest, at least 0.
+inline float largest(const float* values, int count) {
   float most = 0;
+#pragma omp simd reduction(max : most)
   for (int k = 0; k < count; ++k) most = values[k] > most ? values[k] : most;
-  return most <= kInvisible;
+  return most;
 }
 
 /// What a run of smoke shows: its colours over the ground.
@@ -133,9 +134,7 @@ void SmokeLayer::gather(const Snapshot& snapshot, const LatticeWindow& window) {
       for (int begin = runBegin; begin < runEnd; begin += kRunCells) {
         // A place has few of many colours.
         const int end = std::min(begin + kRunCells, runEnd);
-        float most = 0;
-        for (int i = begin; i < end; ++i) most = std::max(most, row[i]);
-        if (most > 0) add(begin, end, 0);
+        if (largest(row + begin, end - begin) > 0) add(begin, end, 0);
       }
       for (int i = runEnd; i < window.i1; ++i) add(i, i + 1, wrapIndex(i, grid.nx, periodX) - i);
     }
@@ -176,7 +175,7 @@ void SmokeLayer::fillClosedCells() {
 /// The parts of the picture where any smoke can be seen: nothing is drawn elsewhere. They are made of the
 /// rasteriser's own tiles, which it fills far faster whole than in part.
 void SmokeLayer::chooseTiles(const Grid& grid, const LatticeWindow& window, const PictureFrame& frame) {
-  const int channels = lattice_.channels, last = channels - 1;
+  const int channels = lattice_.channels;
   const int tilesX = (frame.width + kTilePixels - 1) / kTilePixels;
   const int tilesY = (frame.height + kTilePixels - 1) / kTilePixels;
   std::vector<char> smoky(std::size_t(tilesX) * tilesY, 0);
@@ -186,10 +185,8 @@ void SmokeLayer::chooseTiles(const Grid& grid, const LatticeWindow& window, cons
   for (int j = 0; j < window.ny(); ++j)
     for (int begin = 0; begin < window.nx(); begin += kRunCells) {
       const int end = std::min(begin + kRunCells, window.nx());
-      const float* row = lattice_.row(j);
-      float most = 0;
-      for (int i = begin; i < end; ++i) most = std::max(most, row[i * channels + last]);
-      if (most <= kInvisible) continue;
+      // Of densities, and colours weighed by them.
+      if (largest(lattice_.row(j) + begin * channels, (end - begin) * channels) <= kInvisible) continue;
       const Vec2 low =
           frame.toPixels({(window.i0 + begin - kReach) * grid.h, (window.j0 + j - kReach) * grid.h});
       const Vec2 high =
@@ -249,7 +246,7 @@ void SmokeLayer::drawOnGround(const Snapshot& snapshot, const LayerSpec& layer, 
       const int count = std::min(kRunSamples, nx - begin);
       const float* const row = lattice_.row(j) + std::size_t(begin) * channels;
       std::uint32_t* const out = finished_.data() + std::size_t(j) * nx + begin;
-      if (emptyRun(row, count * channels))
+      if (largest(row, count * channels) <= kInvisible)
         std::fill_n(out, count, nothing);
       else if (channels == 1)
         colorRun<1>(row, count, shade, encoder_, out);
