@@ -13,6 +13,7 @@ namespace {
 constexpr int kGrain = 32;
 constexpr float kSliver = 0.25f;
 constexpr float kLargest = 1e30f;
+constexpr float kLeastCarried = 0.02f;
 
 // The smallest power of two q with value <= 2^23 q: twice as much still fits into the exact range of float32.
 float quantumFor(float value) {
@@ -155,6 +156,8 @@ void Smoke::Impl::release(const Boundary& b) {
 // The value of a cell from its mass; `highest` is passed by rounding only.
 void Smoke::Impl::renew(Channel& c, int cell, const Field& volume, float highest) {
   const int i = volumes.cells().i(cell), j = volumes.cells().j(cell);
+  // In a sliver the quotient is all rounding: it keeps the value of its neighbourhood.
+  if (volume(i, j) < kLeastCarried && c.mass(i, j) > 0 && c.value(i, j) > 0) return;
   c.value(i, j) = c.mass(i, j) > 0 ? std::min(c.mass(i, j) / std::max(volume(i, j), 1e-6f), highest) : 0.0f;
 }
 

@@ -304,23 +304,29 @@ void IrregularFaces::find(const SmokeCells& cells, const Boundary& b, const Fiel
   marksX_.assign(size, 0);
   marksY_.assign(size, 0);
   for (int j = 0; j < ny; ++j) {
-    const float *now = b.volume.row(j), *was = before.row(j), *x = b.openX.row(j), *y = b.openY.row(j);
-    const float* has = carried.row(j);
-    const bool yCounts = j > 0 || cells.periodicY;
+    const float *now = b.volume.row(j), *was = before.row(j), *has = carried.row(j);
+    const float *x = b.openX.row(j), *y = b.openY.row(j), *above = b.openY.row(j + 1);
+    const bool low = j > 0 || cells.periodicY, high = j < ny - 1 || cells.periodicY;
     for (int first = 0; first < nx; first += 16) {
       const int last = std::min(nx, first + 16);
       float least = 1;
       for (int i = first; i < last; ++i)
-        least = std::min({least, now[i], was[i], x[i], yCounts ? y[i] : 1.0f, has[i], 2 - has[i]});
+        least = std::min(
+            {least, now[i], was[i], has[i], 2 - has[i], x[i], low ? y[i] : 1.0f, high ? above[i] : 1.0f});
+      if (last < nx || cells.periodicX) least = std::min(least, x[last]);
       if (least >= 1) continue;
       for (int i = first; i < last; ++i) {
+        const bool left = i > 0 || cells.periodicX, right = i < nx - 1 || cells.periodicX;
+        // A full cell beside a face that a solid closes: the solid drives fluid through that face.
+        const bool touched =
+            (left && x[i] < 1) || (right && x[i + 1] < 1) || (low && y[i] < 1) || (high && above[i] < 1);
+        if (now[i] < 1 || was[i] < 1 || has[i] != 1 || touched) cut.push_back(cells.cell(i, j));
         if (now[i] < 1 || was[i] < 1 || has[i] != 1) {
-          cut.push_back(cells.cell(i, j));
           mark(cells, Axis::x, i, j, -2, 3);
           mark(cells, Axis::y, i, j, -2, 3);
         }
-        if (x[i] < 1 && (i > 0 || cells.periodicX)) mark(cells, Axis::x, i, j, -2, 2);
-        if (y[i] < 1 && yCounts) mark(cells, Axis::y, i, j, -2, 2);
+        if (x[i] < 1 && left) mark(cells, Axis::x, i, j, -2, 2);
+        if (y[i] < 1 && low) mark(cells, Axis::y, i, j, -2, 2);
       }
     }
   }
