@@ -19,15 +19,26 @@ Progress::~Progress() { clear(); }
 
 double Progress::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
+bool Progress::due() {
+  const Clock::time_point now = Clock::now();
+  if (std::chrono::duration<double>(now - last_).count() < kSecondsBetween) return false;
+  last_ = now;
+  return true;
+}
+
+void Progress::showPreparing(long done, long of) {
+  if (quiet_ || !terminal_ || of < 1 || !due()) return;
+  shown_ = true;
+  std::fprintf(stderr, "\rfinding the ranges of the colours, %ld%%\033[K", 100 * done / of);
+}
+
 void Progress::show(long done) {
   if (quiet_ || frames_ < 1 || done < 1) return;
   const double left = seconds() * static_cast<double>(frames_ - done) / static_cast<double>(done);
   const long minutes = static_cast<long>(left) / 60, seconds = static_cast<long>(left) % 60;
   const long percent = 100 * done / frames_;
   if (terminal_) {
-    const Clock::time_point now = Clock::now();
-    if (done < frames_ && std::chrono::duration<double>(now - last_).count() < kSecondsBetween) return;
-    last_ = now;
+    if (!due() && done < frames_) return;
     shown_ = true;
     std::fprintf(stderr, "\rframe %ld of %ld, %ld%%, %ld:%02ld left\033[K", done, frames_, percent, minutes,
                  seconds);

@@ -14,6 +14,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// After so many of the frames of the coarse run that comes first; on a terminal only.
+  void showPreparing(long done, long of);
   /// After so many frames.
   void show(long done);
   void clear();
@@ -21,6 +23,8 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// Has the terminal's line been left alone for long enough?
+  bool due();
   long frames_;
   bool quiet_, terminal_, shown_ = false;
   long tenths_ = 0;

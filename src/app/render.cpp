@@ -92,14 +92,18 @@ int runRender(const RenderOptions& options) {
   SummaryFigures summary;
   {
     FilmPipeline pipeline(format.width, format.height, std::move(outputs));
-    const FilmRanges ranges = findRanges(document, options.threads);
+    const FilmRanges ranges = findRanges(document, options.threads, [&](long done, long of) {
+      throwIfInterrupted();
+      progress.showPreparing(done, of);
+    });
     World world(document, {.threads = options.threads, .figures = stats.has_value()});
+    auto step = [&] {
+      throwIfInterrupted();
+      world.step();
+      if (stats) stats->add(world.figures());
+    };
     for (long frame = 0; frame <= last; ++frame) {
-      for (int k = 0; frame > 0 && k < spec.time.stepsPerFrame; ++k) {
-        throwIfInterrupted();
-        world.step();
-        if (stats) stats->add(world.figures());
-      }
+      for (int k = 0; frame > 0 && k < spec.time.stepsPerFrame; ++k) step();
       throwIfInterrupted();
       if (std::any_of(wanted.begin(), wanted.end(),
                       [&](const FrameRange& frames) { return frames.has(frame); })) {
@@ -112,6 +116,9 @@ int runRender(const RenderOptions& options) {
       }
       progress.show(frame + 1);
     }
+    // The figures of a whole film go to the end of its duration, which comes after its last frame.
+    if (stats && last + 1 == count)
+      while (world.stepCount() < spec.time.steps) step();
     pipeline.finish();
     summary = world.summary();
   }

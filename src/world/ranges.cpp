@@ -65,7 +65,8 @@ double niceCeiling(double value) {
   return 10 * power;
 }
 
-FilmRanges findRanges(const SceneDocument& document, int threads) {
+FilmRanges findRanges(const SceneDocument& document, int threads,
+                      const std::function<void(long done, long frames)>& eachFrame) {
   const SceneSpec spec = document.spec();
   FilmRanges ranges;
   Wanted wanted;
@@ -100,6 +101,7 @@ FilmRanges findRanges(const SceneDocument& document, int threads) {
     if (!snapshot.vorticity.empty())
       vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
     if (!snapshot.velocityX.empty()) speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
+    if (eachFrame) eachFrame(frame, frames);
   }
   auto settle = [](std::vector<float>& reached, bool want, std::array<double, 2>& range, bool bothSigns) {
     const double top = want ? quantile(reached, 0.95) : 0;

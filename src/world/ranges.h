@@ -2,6 +2,7 @@
 // simulated once on a coarser grid and its values are looked at. Costs a few per cent of the film.
 #pragma once
 #include <array>
+#include <functional>
 
 #include "scene/document.h"
 #include "world/snapshot.h"
@@ -19,8 +20,10 @@ struct FilmRanges {
 
 /// Ranges that the scene gives are taken; others are found by a coarse run, in which all but one value in a
 /// thousand of the film's frames (and all but one frame in twenty, for a violent start) lie inside. Runs
-/// nothing if no layer needs it.
-FilmRanges findRanges(const SceneDocument& document, int threads);
+/// nothing if no layer needs it. `eachFrame` is called after each of the coarse run's frames with how many
+/// there have been, and of how many; what it throws breaks off.
+FilmRanges findRanges(const SceneDocument& document, int threads,
+                      const std::function<void(long done, long frames)>& eachFrame = {});
 
 /// The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not below `value` (> 0).
 double niceCeiling(double value);

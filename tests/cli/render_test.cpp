@@ -104,11 +104,15 @@ TEST_F(Render, TellsProgressInTenths) {
 }
 
 TEST_F(Render, WritesFiguresOfTheFilm) {
-  // The same names as from `simulate`, and the speed of the film.
+  // The same names as from `simulate`, for every step of the duration, and the speed of the film; of a part
+  // of the film, up to its last frame.
   ASSERT_EQ(render({"-o", "a.mp4", "--stats", "s.json"}).status, 0);
   const nlohmann::json json = nlohmann::json::parse(fileText(folder / "s.json"));
-  EXPECT_EQ(json["steps"].size(), 28u);  // frame 14 is after 28 steps
+  EXPECT_EQ(json["steps"].size(), 30u);  // though frame 14 is after 28 steps
+  EXPECT_EQ(json["summary"]["steps"], 30);
   EXPECT_GT(json["summary"]["film_fps"].get<double>(), 0);
+  ASSERT_EQ(render({"-o", "b.mp4", "--frames", "2-4", "--stats", "part.json"}).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(fileText(folder / "part.json"))["steps"].size(), 8u);
 }
 
 TEST_F(Render, RefusesToReplaceAFileUnasked) {
@@ -173,6 +177,19 @@ TEST_F(Render, CtrlCLeavesNothingHalfDone) {
   EXPECT_EQ(written(), std::set<std::string>{"f"});
   for (const auto& entry : std::filesystem::directory_iterator(folder / "f"))
     EXPECT_NO_THROW(readPng(entry.path()));
+}
+
+TEST_F(Render, CtrlCStopsTheCoarseRunToo) {
+  // While the ranges of the colours are being found, before any frame.
+  ProgramRun run({"render", "scene.yaml", "--set", "time.duration=30000", "--set", "view.layers=[pressure]",
+                  "-o", "a.mp4"},
+                 folder.path());
+  ASSERT_TRUE(run.waitUntil([&] { return std::filesystem::exists(folder / "a.mp4.part"); }))
+      << run.errSoFar();
+  run.signal(SIGINT);
+  const RunResult result = run.wait();
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_EQ(written(), std::set<std::string>{});
 }
 
 TEST_F(Render, ReaderThatGoesAwayIsAnInputOutputError) {
