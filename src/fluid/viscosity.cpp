@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace smokebox {
@@ -10,7 +11,14 @@ namespace {
 
 constexpr int kRowGrain = 16;
 constexpr int kMostIterations = 600;
-constexpr double kTolerance = 1e-6;  // largest residual over the largest velocity
+constexpr double kTolerance = 1e-6;  // of the gradients: largest residual over the largest velocity
+// Chebyshev's iteration leaves at most this error, over the largest velocity and over the change of this
+// step.
+constexpr double kOfVelocity = 1e-5, kOfChange = 1e-4;
+constexpr double kRounding = 1e-7;  // of the largest velocity: no use in going on below
+constexpr int kFewestIterations = 2;
+constexpr double kLargestChebyshev = 4;  // above this nu dt / h^2 conjugate gradients are faster
+constexpr int kChunk = 16;               // faces whose links are looked at together
 constexpr float kShortestLink = 1e-3f;
 constexpr int kLanes = 8;  // sums go over fixed lanes, so that they do not depend on the instruction set
 
@@ -20,9 +28,11 @@ struct System {
   int columns = 0, rows = 0;  // unknowns; a period is counted once
   Field toRight,
       toAbove;  // weight of the link to the next face along x and y: 1 or 0; toRight(-1), toAbove(., -1) wrap
-  Field wallWeight;               // sum of the cut links' weights
-  std::vector<float> linkWeight;  // of each of the boundary's links
-  Field unknown;                  // 1 on open faces, 0 elsewhere
+  Field wallWeight;                   // sum of the cut links' weights
+  std::vector<float> linkWeight;      // of each of the boundary's links
+  Field unknown;                      // 1 on open faces, 0 elsewhere
+  int chunks = 0;                     // in a row
+  std::vector<std::uint8_t> regular;  // by row and chunk: all links are 1 and none is cut
 };
 
 }  // namespace
@@ -42,7 +52,14 @@ struct Viscosity::Impl {
   }
 
   void rebuild(const Boundary& boundary, System& s);
+  void findRegular(System& s);
   Result solve(const Boundary& boundary, const System& s, Field& x, double c);
+  Result solveByGradients(const Boundary& boundary, const System& s, Field& x, double c);
+  Result solveByChebyshev(const System& s, Field& x, double c, double largest);
+  /// Adds what the walls give to the right side; returns the largest of their speeds.
+  float addWalls(const Boundary& boundary, const System& s, float c, Field& right) const;
+  /// The largest known value, no less than `lowest`.
+  double largestOf(const System& s, const Field& x, double lowest);
 
   template <class Row>
   double sum(const System& s, Row&& row) {
@@ -96,6 +113,44 @@ double rowSum(int count, Term&& term) {
   return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
+/// One row of Chebyshev's iteration: out = x + momentum (x - out) + step (b - A x) / diagonal; returns the
+/// largest |b - A x| / diagonal. `out` holds the iterate before x.
+float chebyshevRow(const System& s, const Field& x, const Field& b, Field& out, float c, float momentum,
+                   float step, int j) {
+  const float *q = x.row(j), *above = x.row(j + 1), *below = x.row(j - 1), *known = b.row(j);
+  float* o = out.row(j);
+  const std::uint8_t* regular = s.regular.data() + static_cast<std::size_t>(j) * s.chunks;
+  float largest = 0;
+  for (int chunk = 0; chunk < s.chunks;) {
+    int last = chunk + 1;
+    while (last < s.chunks && regular[last] == regular[chunk]) ++last;
+    const int begin = chunk * kChunk, end = std::min(last * kChunk, s.columns);
+    if (regular[chunk]) {
+      const float inverse = 1 / (1 + c * 4);
+#pragma omp simd reduction(max : largest)
+      for (int i = begin; i < end; ++i) {
+        const float r = inverse * (known[i] + c * ((q[i - 1] + q[i + 1]) + (below[i] + above[i]))) - q[i];
+        o[i] = (q[i] + momentum * (q[i] - o[i])) + step * r;
+        largest = std::max(largest, std::fabs(r));
+      }
+    } else {
+      const float *right = s.toRight.row(j), *up = s.toAbove.row(j), *down = s.toAbove.row(j - 1),
+                  *wall = s.wallWeight.row(j);
+#pragma omp simd reduction(max : largest)
+      for (int i = begin; i < end; ++i) {
+        const float inverse = 1 / (1 + c * (((right[i - 1] + right[i]) + (down[i] + up[i])) + wall[i]));
+        const float links =
+            (right[i - 1] * q[i - 1] + right[i] * q[i + 1]) + (down[i] * below[i] + up[i] * above[i]);
+        const float r = inverse * (known[i] + c * links) - q[i];
+        o[i] = (q[i] + momentum * (q[i] - o[i])) + step * r;
+        largest = std::max(largest, std::fabs(r));
+      }
+    }
+    chunk = last;
+  }
+  return largest;
+}
+
 float linkWeightOf(const CutLink& link) {
   return std::clamp(link.drag, 0.0f, 1.0f) / std::max(link.theta, kShortestLink);
 }
@@ -145,16 +200,122 @@ void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
   }
   wrap(s, s.toRight);
   wrap(s, s.toAbove);
+  findRegular(s);
 }
 
-Viscosity::Result Viscosity::Impl::solve(const Boundary& boundary, const System& s, Field& x,
-                                         double coefficient) {
-  const auto c = static_cast<float>(coefficient);
+void Viscosity::Impl::findRegular(System& s) {
+  s.chunks = (s.columns + kChunk - 1) / kChunk;
+  s.regular.resize(static_cast<std::size_t>(s.rows) * s.chunks);
+  pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      const float *right = s.toRight.row(j), *up = s.toAbove.row(j), *down = s.toAbove.row(j - 1),
+                  *wall = s.wallWeight.row(j);
+      for (int chunk = 0; chunk < s.chunks; ++chunk) {
+        const int first = chunk * kChunk, last = std::min(first + kChunk, s.columns);
+        float least = 1, most = 0;
+#pragma omp simd reduction(min : least) reduction(max : most)
+        for (int i = first; i < last; ++i) {
+          least = std::min(least, std::min(std::min(right[i - 1], right[i]), std::min(down[i], up[i])));
+          most = std::max(most, wall[i]);
+        }
+        s.regular[static_cast<std::size_t>(j) * s.chunks + chunk] = least == 1 && most == 0;
+      }
+    }
+  });
+}
+
+float Viscosity::Impl::addWalls(const Boundary& boundary, const System& s, float c, Field& right) const {
   const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
+  float largest = 0;
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (s.linkWeight[k] == 0) continue;
+    right(links[k].i, links[k].j) += c * s.linkWeight[k] * links[k].velocity;
+    largest = std::max(largest, std::fabs(links[k].velocity));
+  }
+  return largest;
+}
+
+double Viscosity::Impl::largestOf(const System& s, const Field& x, double lowest) {
+  return pool.max(0, s.rows, kRowGrain, lowest, [&](int begin, int end) {
+    float m = 0;
+    for (int j = begin; j < end; ++j) {
+      const float *q = x.row(j), *known = s.unknown.row(j);
+#pragma omp simd reduction(max : m)
+      for (int i = 0; i < s.columns; ++i) m = std::max(m, known[i] * std::fabs(q[i]));
+    }
+    return static_cast<double>(m);
+  });
+}
+
+Viscosity::Result Viscosity::Impl::solve(const Boundary& boundary, const System& s, Field& x, double c) {
+  Result result;
+  if (c > kLargestChebyshev) {
+    result = solveByGradients(boundary, s, x, c);
+  } else {
+    pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
+      for (int j = begin; j < end; ++j) std::copy_n(x.row(j), s.columns, residual.row(j));
+    });
+    const float walls = addWalls(boundary, s, static_cast<float>(c), residual);
+    result = solveByChebyshev(s, x, c, largestOf(s, x, walls));
+  }
+  // A period's first row or column is repeated at its end.
+  if (s.alongX && wrapX)
+    for (int j = 0; j < s.rows; ++j) x(s.columns, j) = x(0, j);
+  if (!s.alongX && wrapY) std::copy_n(x.row(0), s.columns, x.row(s.rows));
+  return result;
+}
+
+// Over its diagonal the matrix has all its eigenvalues within 1 / (1 + 4 c) and 2 - 1 / (1 + 4 c), whatever
+// the walls: Chebyshev's iteration needs no scalar products, one pass an iteration (Saad, Iterative Methods,
+// algorithm 12.1). That also bounds the error after k iterations, by 2 q^k, so that their number is known
+// after the first; to look at the residual would not do, which is small now and then by chance. The right
+// side is in `residual`; closed faces have no link and keep their values.
+Viscosity::Result Viscosity::Impl::solveByChebyshev(const System& s, Field& x, double coefficient,
+                                                    double largest) {
+  const auto c = static_cast<float>(coefficient);
+  const double lowest = 1 / (1 + 4 * coefficient), radius = 1 - lowest;
+  if (!(radius > 0)) return {0, true};
+  const double root = std::sqrt((1 + radius) / lowest), q = (root - 1) / (root + 1);
+  Field *now = &x, *next = &direction;
+  double rho = radius;
+  float momentum = 0, step = 1;  // the first step is Jacobi's
+  int count = kFewestIterations;
+  for (int k = 0; k < count; ++k) {
+    wrap(s, *now);
+    const double change = pool.max(0, s.rows, kRowGrain, 0, [&](int begin, int end) {
+      float m = 0;
+      for (int j = begin; j < end; ++j)
+        m = std::max(m, chebyshevRow(s, *now, residual, *next, c, momentum, step, j));
+      return static_cast<double>(m);
+    });
+    std::swap(now, next);
+    if (k == 0) {
+      const double enough =
+          std::max(kRounding * largest, lowest * std::min(kOfVelocity * largest, kOfChange * change));
+      double bound = 2 * change * q * q;
+      while (bound > enough && count < kMostIterations) {
+        bound *= q;
+        ++count;
+      }
+    }
+    const double rhoNext = 1 / (2 / radius - rho);
+    momentum = static_cast<float>(rhoNext * rho);
+    step = static_cast<float>(2 * rhoNext / radius);
+    rho = rhoNext;
+  }
+  if (now != &x)
+    pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
+      for (int j = begin; j < end; ++j) std::copy_n(now->row(j), s.columns, x.row(j));
+    });
+  return {count, count < kMostIterations};
+}
+
+Viscosity::Result Viscosity::Impl::solveByGradients(const Boundary& boundary, const System& s, Field& x,
+                                                    double coefficient) {
+  const auto c = static_cast<float>(coefficient);
   const int n = s.columns;
 
   // Right side: the velocity before, and what the walls give. Closed faces: diagonal 1 and no residual.
-  float walls = 0;
   pool.blocks(0, s.rows, kRowGrain, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       const float *right = s.toRight.row(j), *up = s.toAbove.row(j), *down = s.toAbove.row(j - 1),
@@ -165,23 +326,11 @@ Viscosity::Result Viscosity::Impl::solve(const Boundary& boundary, const System&
       std::copy_n(x.row(j), n, residual.row(j));
     }
   });
-  for (std::size_t k = 0; k < links.size(); ++k) {
-    if (s.linkWeight[k] == 0) continue;
-    residual(links[k].i, links[k].j) += c * s.linkWeight[k] * links[k].velocity;
-    walls = std::max(walls, std::fabs(links[k].velocity));
-  }
+  const float walls = addWalls(boundary, s, c, residual);
 
   // The residual of what was there is small only for a small c; it is as good a start as any.
   wrap(s, x);
-  const double largest = pool.max(0, s.rows, kRowGrain, walls, [&](int begin, int end) {
-    float m = 0;
-    for (int j = begin; j < end; ++j) {
-      const float *q = x.row(j), *known = s.unknown.row(j);
-#pragma omp simd reduction(max : m)
-      for (int i = 0; i < n; ++i) m = std::max(m, known[i] * std::fabs(q[i]));
-    }
-    return static_cast<double>(m);
-  });
+  const double largest = largestOf(s, x, walls);
   double rho = sum(s, [&](int j) {
     float *r = residual.row(j), *z = direction.row(j), *a = product.row(j);
     const float *d = diagonal.row(j), *known = s.unknown.row(j);
@@ -244,10 +393,6 @@ Viscosity::Result Viscosity::Impl::solve(const Boundary& boundary, const System&
       }
     });
   }
-  // A period's first row or column is repeated at its end.
-  if (s.alongX && wrapX)
-    for (int j = 0; j < s.rows; ++j) x(s.columns, j) = x(0, j);
-  if (!s.alongX && wrapY) std::copy_n(x.row(0), n, x.row(s.rows));
   return result;
 }
 
@@ -273,7 +418,7 @@ std::size_t Viscosity::bytes() const {
   std::size_t total = 0;
   for (const System* s : {&impl_->systemU, &impl_->systemV})
     total += s->toRight.bytes() + s->toAbove.bytes() + s->wallWeight.bytes() + s->unknown.bytes() +
-             s->linkWeight.capacity() * sizeof(float);
+             s->linkWeight.capacity() * sizeof(float) + s->regular.capacity();
   for (const Field* f : {&impl_->diagonal, &impl_->residual, &impl_->direction, &impl_->product})
     total += f->bytes();
   return total;

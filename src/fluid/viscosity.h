@@ -1,5 +1,6 @@
 // Implicit viscosity with cut links to the wall (Gibou 2002): symmetric positive definite, second order in
-// the velocity on curved and moving solids. Each component is solved by itself, by conjugate gradients.
+// the velocity on curved and moving solids. Each component is solved by itself: by
+// Chebyshev's iteration, for very large steps by conjugate gradients.
 #pragma once
 #include <memory>
 
