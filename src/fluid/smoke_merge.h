@@ -21,6 +21,9 @@ class CellClusters {
             Field& courantY, int parts, int mostParts);
   void clear(const SmokeCells& cells);
 
+  /// The nodes, and the cells that get less because flows were reduced.
+  const std::vector<int>& nodes() const { return nodes_; }
+
   int count() const { return static_cast<int>(first_.size()) - 1; }
   /// Cells of cluster k; the first is the one with corrected fluxes, unless all are merged.
   const int* begin(int k) const { return members_.data() + first_[k]; }

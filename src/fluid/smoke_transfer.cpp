@@ -8,8 +8,10 @@ constexpr float kTolerance = 1e-6f;
 constexpr int kReachOfClosed = 128;              // cells looked at
 constexpr int kReachOfPairs[] = {4, 12, 40};     // of cells that close
 constexpr int kReachOfExchange[] = {4, 12, 40};  // the nearest partners first
-constexpr float kMostTaken = 0.95f;              // of what a cell carries
-constexpr int kWindow = 2;                       // cells to either side in which two sides are told apart
+constexpr int kReachOfFlows[] = {40, 800};
+constexpr int kReachOfDeficit = 12;
+constexpr float kMostTaken = 0.95f;  // of what a cell carries
+constexpr int kWindow = 2;           // cells to either side in which two sides are told apart
 
 float volumeOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c) {
   return (*geometry.volume)(cells.i(c), cells.j(c));
@@ -131,8 +133,7 @@ bool TransferPlan::passed(const SmokeCells& cells, int c, const SmokeGeometry& b
 }
 
 void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-                            const SmokeGeometry& after, const Field& courantX, const Field& courantY,
-                            Field& carried) {
+                            const SmokeGeometry& after, Field& courantX, Field& courantY, Field& carried) {
   reserve(cells);
   handed_.clear();
   for (int c : cut) {
@@ -173,6 +174,8 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
     give(c, nearest, std::max(content_[c], 0.0f), true);
   }
 
+  correctFlows(cells, cut, after, courantX, courantY);
+
   // Back to a clean slate; cells off the list may have been given something.
   auto settle = [&](int c) {
     if (c < 0) return;
@@ -189,6 +192,57 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
   };
   for (int c : cut) forget(c);
   for (const SmokeTransfer& t : handed_) forget(t.to);
+}
+
+// Adds a flow along the path that the last search, which began at `from`, took to `to`.
+void TransferPlan::route(const SmokeCells& cells, int from, int to, float volume, Field& courantX,
+                         Field& courantY) {
+  excess_[from] -= volume;
+  excess_[to] += volume;
+  for (int cell = to; cell != from;) {
+    const int last = cameFrom_[cell], i = cells.i(last), j = cells.j(last);
+    int face = 0;
+    while (face < 3 && cells.neighbour(last, face) != cell) ++face;
+    float& flow = SmokeCells::atFace(courantX, courantY, i, j, face);
+    flow += outwards(face) * volume;
+    // The two copies of a periodic side's faces agree.
+    if (cells.periodicX && face == 0 && i == 0) courantX(cells.nx, j) = flow;
+    if (cells.periodicX && face == 1 && i == cells.nx - 1) courantX(0, j) = flow;
+    if (cells.periodicY && face == 2 && j == 0) courantY(i, cells.ny) = flow;
+    if (cells.periodicY && face == 3 && j == cells.ny - 1) courantY(i, 0) = flow;
+    cell = last;
+  }
+}
+
+// Lets open cells that would end with too much flow into the nearest that lack some, and cells that would end
+// with less than half of their volume draw on others.
+void TransferPlan::correctFlows(const SmokeCells& cells, const std::vector<int>& cut,
+                                const SmokeGeometry& after, Field& courantX, Field& courantY) {
+  for (const int reach : kReachOfFlows)
+    for (int c : cut) {
+      if (volumeOf(cells, after, c) <= 0 || excess_[c] <= kTolerance) continue;
+      search(cells, c, &after, reach);
+      for (int other : found_) {
+        const float moved = std::min(excess_[c], -excess_[other]);
+        if (volumeOf(cells, after, other) > 0 && moved > kTolerance)
+          route(cells, c, other, moved, courantX, courantY);
+        if (excess_[c] <= kTolerance) break;
+      }
+    }
+  for (int c : cut) {
+    const float open = volumeOf(cells, after, c);
+    float lacks = -0.5f * open - excess_[c];
+    if (open <= 0 || lacks <= kTolerance) continue;
+    search(cells, c, &after, kReachOfDeficit);
+    for (int other : found_) {
+      const float has = volumeOf(cells, after, other);
+      const float moved = std::min(lacks, excess_[other] + 0.5f * has);
+      if (has <= 0 || moved <= kTolerance) continue;
+      route(cells, c, other, -moved, courantX, courantY);
+      lacks -= moved;
+      if (lacks <= kTolerance) break;
+    }
+  }
 }
 
 // Sends a volume along the path that the last search, which began at `to`, took to `from`: each cell on the

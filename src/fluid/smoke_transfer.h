@@ -4,9 +4,11 @@
 // It follows the open share of the cell, but not exactly, since fluxes are those of one moment and the solid
 // moves on through the step. Before the sweeps a cell that closes hands all it has to cells that it was
 // connected with, and so does one that a thin wall has passed (the part of it that counts as open is now on
-// the wall's other side). After the sweeps volume goes, with the smoke in it, from cells that carry too much
-// to cells near by that carry too little. Volume and smoke always go together, so a uniform field stays
-// uniform and no value leaves its bounds; what finds no partner near by is carried on.
+// the wall's other side). Fluxes near the solid are corrected along the way from cells that would end with
+// too much to the nearest that would end with too little. After the sweeps volume goes, with the smoke in it,
+// from cells that carry too much to cells near by that carry too little. Volume and smoke always go together,
+// so a uniform field stays uniform and no value leaves its bounds; what finds no partner near by is carried
+// on.
 //
 // Limits: a thin wall that passes a whole cell in one step passes its smoke as well.
 #pragma once
@@ -32,7 +34,7 @@ class TransferPlan {
   /// than they hold. `carried`: changed to what the sweeps start with (1 in closed cells). Courant numbers as
   /// in SweepJob, for the whole step.
   void handOver(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-                const SmokeGeometry& after, const Field& courantX, const Field& courantY, Field& carried);
+                const SmokeGeometry& after, Field& courantX, Field& courantY, Field& carried);
   const std::vector<SmokeTransfer>& handedOver() const { return handed_; }
 
   /// After the sweeps, which left the volumes `carried` in the cells `nodes`; others have what they hold.
@@ -54,6 +56,9 @@ class TransferPlan {
   bool passed(const SmokeCells& cells, int cell, const SmokeGeometry& before, const SmokeGeometry& after);
   void give(int from, int to, float volume, bool all);
   void send(int from, int to, float volume);
+  void route(const SmokeCells& cells, int from, int to, float volume, Field& courantX, Field& courantY);
+  void correctFlows(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& after,
+                    Field& courantX, Field& courantY);
 
   std::vector<SmokeTransfer> handed_, exchanged_;
   std::vector<float> excess_, content_;       // by cell; 0 and 1 outside the list

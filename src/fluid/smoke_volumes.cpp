@@ -15,7 +15,7 @@ constexpr float kLargest = 4096;   // cells per step; faster ones, infinities an
 constexpr float kLeastVolume =
     0.1f;  // of a full cell after the step; cells with less are looked after one by one
 // What a cell may carry too much or too little of what it holds and yet be settled: the flow's divergence.
-constexpr float kSettled = 2e-6f, kSettledAtRest = 1e-5f;
+constexpr float kSettled = 2e-5f, kSettledAtRest = 2e-5f;
 }  // namespace
 
 void wrapMargin(Field& f, Axis axis, int nx, int ny, bool faces) {
@@ -179,6 +179,7 @@ void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, do
       if (parts_ > 0) break;
       scale(attempt < kMostAttempts ? 0.25f : 0.0f, pool);
     }
+    if (carries()) nodes_ = clusters_.nodes();
     irregular_.choose(cells_, b, clusters_);
   } else {
     clusters_.clear(cells_);

@@ -80,7 +80,7 @@ MovingSolid swinging(double t, double rate, double dt) {
 
 TEST(SmokeSolids, BlockSweepingThroughSmokeLosesNothing) {
   // A block swings and turns through a box full of smoke for 1000 steps: the mass stays, and values stay
-  // near 1.
+  // at 1.
   const int n = 64;
   Stirred w(n, n, 1.0 / n, {swinging(0, 2, 1)});
   w.smoke->add(w.b, 0, Field(n, n, 1), 1);
@@ -97,8 +97,8 @@ TEST(SmokeSolids, BlockSweepingThroughSmokeLosesNothing) {
   std::printf("  lowest %.6f, highest %.9f\n", least, most);
   EXPECT_NEAR(t.mass, t.emitted, 1e-8 * t.emitted);
   EXPECT_GE(t.min, 0);
-  EXPECT_LE(most, 1.05);
-  EXPECT_GE(least, 0.7);
+  EXPECT_LE(most, 1 + 1e-4);
+  EXPECT_GE(least, 1 - 1e-3);
 }
 
 TEST(SmokeSolids, FastBlockPushesSmokeAhead) {
@@ -115,7 +115,7 @@ TEST(SmokeSolids, FastBlockPushesSmokeAhead) {
   report("fast block", t);
   EXPECT_NEAR(t.mass, t.emitted, 1e-8 * t.emitted);
   EXPECT_GE(t.min, 0);
-  EXPECT_LE(t.max, 1.5);
+  EXPECT_LE(t.max, 1.001);
 }
 
 // A hollow box with walls thinner than a cell.
@@ -213,6 +213,7 @@ TEST(SmokeSolids, PistonDrivesTheSmokeOutBeforeIt) {
                 behind / t.emitted, most, wrong);
     EXPECT_NEAR(t.mass + t.left, t.emitted, 1e-12);
     EXPECT_LE(behind, 1e-6 * t.emitted);
+    EXPECT_LE(most, 1 + 1e-4);
     EXPECT_LE(wrong, 0.04);
   }
 }
