@@ -5,7 +5,6 @@ extern "C" {
 #include <libavformat/avformat.h>
 #include <libavutil/dict.h>
 #include <libavutil/frame.h>
-#include <libswscale/swscale.h>
 }
 
 #include <memory>
@@ -19,7 +18,6 @@ struct Deleter {
   void operator()(AVFrame* p) const { av_frame_free(&p); }
   void operator()(AVPacket* p) const { av_packet_free(&p); }
   void operator()(AVIOContext* p) const { avio_close(p); }
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
   void operator()(AVDictionary* p) const { av_dict_free(&p); }
 };
 using Format = std::unique_ptr<AVFormatContext, Deleter>;
@@ -27,7 +25,6 @@ using Codec = std::unique_ptr<AVCodecContext, Deleter>;
 using Frame = std::unique_ptr<AVFrame, Deleter>;
 using Packet = std::unique_ptr<AVPacket, Deleter>;
 using Io = std::unique_ptr<AVIOContext, Deleter>;
-using Scaler = std::unique_ptr<SwsContext, Deleter>;
 
 /// Text of an AVERROR code.
 std::string errorText(int code);
