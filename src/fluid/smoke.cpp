@@ -68,6 +68,10 @@ struct Smoke::Impl {
     }
   }
 
+  struct Extent {
+    int left, right, bottom, top;
+  };
+  static Extent extentOf(const Field& share);
   void setQuantum(Channel& c, float q) { c.quantum = {q, 1 / q}; }
   void makeRoom(int channel, float highest);
   void move(int channel, const std::vector<SmokeTransfer>& transfers);
@@ -151,6 +155,26 @@ void Smoke::Impl::release(const Boundary& b) {
     touch(c, to);
   }
   std::erase_if(trapped, [](const Trapped& t) { return t.mass == 0; });
+}
+
+// The columns and rows in which a share is not 0.
+Smoke::Impl::Extent Smoke::Impl::extentOf(const Field& share) {
+  Extent e{share.nx(), 0, share.ny(), 0};
+  for (int j = 0; j < share.ny(); ++j) {
+    const float* row = share.row(j);
+    std::int32_t any = 0;
+#pragma omp simd reduction(| : any)
+    for (int i = 0; i < share.nx(); ++i) any |= row[i] > 0 ? 1 : 0;
+    if (!any) continue;
+    e.bottom = std::min(e.bottom, j);
+    e.top = j + 1;
+    int left = 0, right = share.nx();
+    while (!(row[left] > 0)) ++left;
+    while (!(row[right - 1] > 0)) --right;
+    e.left = std::min(e.left, left);
+    e.right = std::max(e.right, right);
+  }
+  return e;
 }
 
 // The value of a cell from its mass; `highest` is passed by rounding only.
@@ -285,11 +309,12 @@ void Smoke::add(const Boundary& boundary, int channel, const Field& share, doubl
   if (c.quantum.size == 0) return;  // nothing there to be taken away
   const double inverse = c.quantum.inverse, size = c.quantum.size;
   double added = 0;
-  for (int j = 0; j < c.mass.ny(); ++j) {
+  const Impl::Extent extent = s.extentOf(share);
+  for (int j = extent.bottom; j < extent.top; ++j) {
     const float *part = share.row(j), *carried = s.volumes.carried().row(j);
     const float *was = s.volumes.openShare().row(j), *open = boundary.volume.row(j);
     float *m = c.mass.row(j), *value = c.value.row(j);
-    for (int i = 0; i < c.mass.nx(); ++i) {
+    for (int i = extent.left; i < extent.right; ++i) {
       if (!(part[i] > 0) || !(open[i] > 0) || !(was[i] > 0)) continue;
       const double wanted = amount * part[i] * carried[i] * inverse;
       double more = (carried[i] < kSliver ? std::floor(wanted) : std::floor(wanted + 0.5)) * size;

@@ -125,7 +125,8 @@ bool TransferPlan::passed(const SmokeCells& cells, int c, const SmokeGeometry& b
     is |= isOpen;
     both |= wasOpen && isOpen;
   }
-  if (!was || !is) return false;
+  if (!was) return false;
+  if (!is) return true;  // shut in: whichever side it is on when it opens again
   Window old, now;
   old.fill(cells, c, before, before, after);
   now.fill(cells, c, after, before, after);

@@ -169,9 +169,15 @@ inline void cleanInflow(float c, bool lowSide, float& donor, float& extra) {
   if (lowSide ? c > 0 : c < 0) donor = extra = 0;
 }
 
-void clear(float* m, float* r, int n) {
-  std::memset(m, 0, n * sizeof(float));
-  std::memset(r, 0, n * sizeof(float));
+// Empties a strip of a row, unless what it held before says that it is empty.
+void clear(const SweepJob& job, int s, int j) {
+  std::uint8_t& held = job.activeOut->at(s, j);
+  if (!held) return;
+  held = 0;
+  const int first = s * kStrip;
+  const std::size_t size = (std::min(job.nx, first + kStrip) - first) * sizeof(float);
+  std::memset(job.massOut->row(j) + first, 0, size);
+  std::memset(job.valueOut->row(j) + first, 0, size);
 }
 
 struct alignas(64) Row {
@@ -209,8 +215,7 @@ SweepResult Sweeper::runX(const SweepJob& job, ThreadPool& pool) {
       if (!job.active->at(s, j) && (s == 0 || !job.active->at(s - 1, j)) &&
           (s == strips - 1 || !job.active->at(s + 1, j)) &&
           !(wrap && (job.active->at(0, j) || job.active->at(strips - 1, j)))) {
-        clear(mOut + first, rOut + first, n);
-        job.activeOut->at(s, j) = 0;
+        clear(job, s, j);
         continue;
       }
       Row donorRow, extraRow, inRow, outRow, fluxRow;
@@ -262,10 +267,7 @@ SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
     bool any = false;
     for (int j = j0 - 4; j < j1 + 4 && !any; ++j) any = job.active->at(s, j);
     if (!any) {
-      for (int j = j0; j < j1; ++j) {
-        clear(job.massOut->row(j) + first, job.valueOut->row(j) + first, n);
-        job.activeOut->at(s, j) = 0;
-      }
+      for (int j = j0; j < j1; ++j) clear(job, s, j);
       return;
     }
     std::int32_t top = 0;

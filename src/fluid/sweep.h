@@ -52,7 +52,7 @@ struct ClusterRoot {
 /// Which parts of the rows hold any smoke at all: rows -4 .. ny + 3, strips of kStrip columns.
 class Activity {
  public:
-  static constexpr int kStrip = 128;
+  static constexpr int kStrip = 64;
   Activity() = default;
   Activity(int nx, int ny) : strips_((nx + kStrip - 1) / kStrip), flags_(strips_ * (ny + 8), 0) {}
   int strips() const { return strips_; }
@@ -86,7 +86,7 @@ struct SweepJob {
   const float* clusterMass = nullptr;    // of each cluster after the donor fluxes
   const float* clusterVolume = nullptr;  // of each cluster after the sweep
   const Activity* active = nullptr;
-  Activity* activeOut = nullptr;
+  Activity* activeOut = nullptr;  // in: which parts of massOut and valueOut are not all 0
 };
 
 struct SweepResult {
