@@ -1,6 +1,7 @@
 // `smokebox render SCENE`: the film.
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -60,10 +61,16 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+/// The drawing thread rasterises by itself: there is too little to draw for it to be worth waking llvmpipe's
+/// threads, which would take the cores from the simulation. To be called before there are other threads; what
+/// the user has set stays.
+void preferDrawingAlone() { ::setenv("LP_NUM_THREADS", "0", 0); }
+
 }  // namespace
 
 int runRender(const RenderOptions& options) {
   catchInterrupts();
+  preferDrawingAlone();
   for (const std::string& output : options.outputs) outputKind(output);  // throws if the ending is unknown
   const SceneDocument document = loadScene(options.scene, options.settings);
   const SceneSpec spec = document.spec();
