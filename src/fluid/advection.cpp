@@ -41,10 +41,9 @@ struct Advection::Impl {
       // The last row of y-faces, on the upper side, goes with the block below it.
       near.advanceRows(boundary, s, begin, end == ny && !s.periodicY ? ny + 1 : end);
     });
-    extension.apply(boundary, *s.outU, *s.outV);
   }
 
-  /// One Wicker-Skamarock step of dt, `phiShare` of the whole; u, v extended in and out.
+  /// One Wicker-Skamarock step of dt, `phiShare` of the whole; u, v extended in, not yet out.
   void rungeKutta(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
                   const Field* accelerationV, double dt, double phiShare,
                   const RoughProjection& projectRoughly) {
@@ -61,6 +60,7 @@ struct Advection::Impl {
       stage(boundary, s);
     };
     run(u, v, u1, v1, 1.0 / 3);
+    extension.apply(boundary, u1, v1);
     run(u1, v1, u2, v2, 1.0 / 2);
     // The increment is that of half this step.
     projectRoughly(u2, v2, phiShare < 1 ? kCyclesInSubStep : kCyclesInStep, 2 / phiShare);
@@ -140,8 +140,7 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     const double share = 1.0 / result.subSteps;
     for (int k = 0; k < result.subSteps; ++k) {
       m.rungeKutta(boundary, u, v, phi, accelerationU, accelerationV, share * dt, share, projectRoughly);
-      if (k + 1 == result.subSteps) break;
-      projectRoughly(u, v, kCyclesBetween, result.subSteps);
+      if (k + 1 < result.subSteps) projectRoughly(u, v, kCyclesBetween, result.subSteps);
       m.extension.apply(boundary, u, v);
     }
     return result;

@@ -60,9 +60,9 @@ struct PressureSolver::Impl {
   int solve(double start, double target, int maxIterations);
   /// direction = x + beta direction; returns its product with A direction.
   double advanceDirection(float beta);
-  /// solution += alpha direction, b -= alpha A direction (computed again: cheaper than to keep it); returns
-  /// the largest |b|.
-  double advanceSolution(float alpha);
+  /// solution += alpha direction (from 0 if it is the first), b -= alpha A direction (computed again: cheaper
+  /// than to keep it); returns the largest |b|. b is left alone if this is the last step.
+  double advanceSolution(float alpha, bool first, bool last);
   /// Takes the mean off the solution in sealed regions.
   void centreSolution();
   /// phi += gain x.
@@ -159,7 +159,7 @@ double PressureSolver::Impl::advanceDirection(float beta) {
   return total;
 }
 
-double PressureSolver::Impl::advanceSolution(float alpha) {
+double PressureSolver::Impl::advanceSolution(float alpha, bool first, bool last) {
   Level& level = multigrid.finest();
   forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
     float *x = solution.data(), *r = level.b.data();
@@ -169,7 +169,9 @@ double PressureSolver::Impl::advanceSolution(float alpha) {
     for (int c = 0; c < level.chunks; ++c) {
       if (kind[c] & kEmpty) continue;
       const std::ptrdiff_t i = level.at(c * kLanes, j);
-      store(x + i, load(x + i) + alpha * load(p + i));
+      const Lanes step = alpha * load(p + i);
+      store(x + i, first ? step : load(x + i) + step);
+      if (last) continue;
       const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
       store(r + i, value);
       m = multigrid::larger(multigrid::magnitude(value), m);
@@ -221,7 +223,6 @@ void PressureSolver::Impl::add(const Floats& values, Field& phi, float gain) {
 }
 
 int PressureSolver::Impl::solve(double start, double target, int maxIterations) {
-  std::fill(solution.begin(), solution.end(), 0.0f);
   const double enough = std::max(target, start * kTrusted);
   double product = 0;
   int iteration = 0;
@@ -232,9 +233,11 @@ int PressureSolver::Impl::solve(double start, double target, int maxIterations) 
     if (!(curvature > 0)) break;
     product = next;
     ++iteration;
-    const double residual = advanceSolution(static_cast<float>(product / curvature));
+    const double residual = advanceSolution(static_cast<float>(product / curvature), iteration == 1,
+                                            target == 0 && iteration == maxIterations);
     if (!(residual > enough)) break;
   }
+  if (iteration == 0) std::fill(solution.begin(), solution.end(), 0.0f);
   centreSolution();
   return iteration;
 }
