@@ -12,7 +12,7 @@ namespace smokebox {
 
 namespace {
 
-constexpr int kCoarseCells = 96;  // along the shorter side, about
+constexpr int kCoarseCells = 64;  // along the shorter side, at least
 
 // The largest divisor of the grid that leaves at least kCoarseCells along the shorter side and keeps cells
 // square.
@@ -22,6 +22,22 @@ int coarsening(const Grid& grid) {
   for (int factor = common; factor > 1; --factor)
     if (common % factor == 0 && shorter / factor >= kCoarseCells) return factor;
   return 1;
+}
+
+// The same film on a coarser grid, with steps as many times longer as still make whole frames.
+SceneDocument coarsened(const SceneDocument& document, const SceneSpec& spec, long frames) {
+  SceneDocument coarse = document;
+  const int factor = coarsening(spec.domain.grid);
+  int longer = std::min(factor, spec.time.stepsPerFrame);
+  while (spec.time.stepsPerFrame % longer != 0) --longer;
+  const std::string fps = std::to_string(spec.output.fps);
+  const SourcePlace nowhere;
+  coarse.set("domain.resolution", std::to_string(spec.domain.grid.nx / factor), nowhere);
+  coarse.set("time.step", "1/(" + fps + "*" + std::to_string(spec.time.stepsPerFrame / longer) + ")",
+             nowhere);
+  coarse.set("time.duration", std::to_string(frames) + "/" + fps, nowhere);
+  coarse.set("view.layers", "[pressure, vorticity, speed]", nowhere);
+  return coarse;
 }
 
 double quantile(std::vector<float>& values, double share) {
@@ -85,16 +101,12 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
   if (eventSets(spec, "view.layers")) wanted = {true, true, true};
   if (!spec.hasFluid || !wanted.any()) return ranges;
 
-  SceneDocument coarse = document;
-  const int factor = coarsening(spec.domain.grid);
-  coarse.set("domain.resolution", std::to_string(spec.domain.grid.nx / factor), SourcePlace{});
-  coarse.set("view.layers", "[pressure, vorticity, speed]", SourcePlace{});
-  World world(coarse, {threads, false});
+  const long frames = std::max(1L, spec.time.steps / spec.time.stepsPerFrame);
+  World world(coarsened(document, spec, frames), {threads, false});
   Snapshot snapshot;
   std::vector<float> scratch, pressure, vorticity, speed;
-  const long frames = spec.time.steps / spec.time.stepsPerFrame;
   for (long frame = 1; frame <= frames; ++frame) {
-    for (int k = 0; k < spec.time.stepsPerFrame; ++k) world.step();
+    for (int k = 0; k < world.spec().time.stepsPerFrame; ++k) world.step();
     world.capture(snapshot);
     if (!snapshot.pressure.empty())
       pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
