@@ -41,6 +41,10 @@ void fluxes(int n, const float* __restrict c, const float* __restrict r, const f
   }
 }
 
+// By value: std::min and std::max hand out references, which keeps GCC 12 from vectorising the loops below.
+inline float larger(float a, float b) { return a > b ? a : b; }
+inline float smaller(float a, float b) { return a < b ? a : b; }
+
 // Zalesak's limits: which part of the corrections may flow into a cell (`in`) and out of it (`out`).
 void limits(int n, const float* __restrict m, const float* __restrict v, const float* __restrict cLow,
             const float* __restrict cHigh, const float* __restrict donorLow,
@@ -51,22 +55,22 @@ void limits(int n, const float* __restrict m, const float* __restrict v, const f
   for (int k = 0; k < n; ++k) {
     const float vNext = v[k] - (cHigh[k] - cLow[k]);
     const float mDonor = m[k] - (donorHigh[k] - donorLow[k]);
-    const float enters = std::max(extraLow[k], 0.0f) - std::min(extraHigh[k], 0.0f);
-    const float leaves = std::max(extraHigh[k], 0.0f) - std::min(extraLow[k], 0.0f);
-    const float room = std::max(highest * vNext - mDonor - slack, 0.0f),
-                stock = std::max(mDonor - slack, 0.0f);
-    in[k] = std::min(1.0f, room / (enters + kTiny));
-    out[k] = std::min(1.0f, stock / (leaves + kTiny));
+    const float enters = larger(extraLow[k], 0.0f) - smaller(extraHigh[k], 0.0f);
+    const float leaves = larger(extraHigh[k], 0.0f) - smaller(extraLow[k], 0.0f);
+    const float room = larger(highest * vNext - mDonor - slack, 0.0f),
+                stock = larger(mDonor - slack, 0.0f);
+    in[k] = smaller(1.0f, room / (enters + kTiny));
+    out[k] = smaller(1.0f, stock / (leaves + kTiny));
   }
 }
 
 // The limits of a cell that stands for a cluster.
 void clusterLimits(float mass, float volume, float extraLow, float extraHigh, float highest, float slack,
                    float& in, float& out) {
-  const float enters = std::max(extraLow, 0.0f) - std::min(extraHigh, 0.0f);
-  const float leaves = std::max(extraHigh, 0.0f) - std::min(extraLow, 0.0f);
-  in = std::min(1.0f, std::max(highest * volume - mass - slack, 0.0f) / (enters + kTiny));
-  out = std::min(1.0f, std::max(mass - slack, 0.0f) / (leaves + kTiny));
+  const float enters = larger(extraLow, 0.0f) - smaller(extraHigh, 0.0f);
+  const float leaves = larger(extraHigh, 0.0f) - smaller(extraLow, 0.0f);
+  in = smaller(1.0f, larger(highest * volume - mass - slack, 0.0f) / (enters + kTiny));
+  out = smaller(1.0f, larger(mass - slack, 0.0f) / (leaves + kTiny));
 }
 
 // The final flux, a whole number of quanta.
@@ -78,7 +82,7 @@ void joinFluxes(int n, const float* __restrict c, const float* __restrict r, Ste
   const float floorValue = kRoundingFloor * q.size;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
-    const float up = std::min(inHigh[k], outLow[k]), down = std::min(inLow[k], outHigh[k]);
+    const float up = smaller(inHigh[k], outLow[k]), down = smaller(inLow[k], outHigh[k]);
     const float share = extra[k] > 0 ? up : down;
     const float x = (donor[k] + extra[k] * share) * q.inverse;
     const float upwind = c[k] > 0 ? r[k - d] : r[k];
