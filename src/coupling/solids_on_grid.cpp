@@ -9,6 +9,13 @@
 namespace smokebox {
 namespace {
 
+constexpr int kMostCopies = 100;  // along x or y: of a solid far wider than a periodic domain only the middle
+
+/// Whole numbers, which may be too large for an int.
+struct Range {
+  double first, last;
+};
+
 void closeSide(const Boundary& boundary, Side side, Field& open) {
   const WallKind kind = boundary.side(side).kind;
   if (kind == WallKind::open || kind == WallKind::periodic) return;
@@ -69,16 +76,20 @@ void SolidsOnGrid::placeCopies(const std::vector<MovingSolid>& solids, const Bou
       }
     if (lo.x > hi.x) continue;
     // Images that reach the domain, or a cell beyond it: links look that far.
-    auto range = [&](bool periodic, double from, double to, double size, int& first, int& last) {
-      first = periodic ? static_cast<int>(std::ceil((-grid.h - to) / size)) : 0;
-      last = periodic ? static_cast<int>(std::floor((size + grid.h - from) / size)) : 0;
+    auto range = [&](bool periodic, double from, double to, double size) {
+      Range range{std::ceil((-grid.h - to) / size), std::floor((size + grid.h - from) / size)};
+      if (!periodic) return Range{std::max(range.first, 0.0), std::min(range.last, 0.0)};
+      if (range.last - range.first < kMostCopies) return range;
+      const double middle = std::floor(0.5 * (range.first + range.last));
+      return Range{middle - kMostCopies / 2, middle + kMostCopies / 2};
     };
-    int firstX, lastX, firstY, lastY;
-    range(boundary.periodicX(), lo.x, hi.x, grid.width(), firstX, lastX);
-    range(boundary.periodicY(), lo.y, hi.y, grid.height(), firstY, lastY);
-    for (int y = firstY; y <= lastY; ++y)
-      for (int x = firstX; x <= lastX; ++x)
-        copies_.push_back({static_cast<int>(k), {x * grid.width(), y * grid.height()}});
+    // None for a solid far away, however far: then no rounding of its outline can do harm.
+    const Range alongX = range(boundary.periodicX(), lo.x, hi.x, grid.width()),
+                alongY = range(boundary.periodicY(), lo.y, hi.y, grid.height());
+    for (int y = 0; alongY.first + y <= alongY.last && y <= kMostCopies; ++y)
+      for (int x = 0; alongX.first + x <= alongX.last && x <= kMostCopies; ++x)
+        copies_.push_back({static_cast<int>(k),
+                           {(alongX.first + x) * grid.width(), (alongY.first + y) * grid.height()}});
   }
   outlines_.resize(copies_.size());
   for (std::size_t c = 0; c < copies_.size(); ++c) {

@@ -7,13 +7,17 @@ Fluid::Fluid(const Boundary& boundary, const Parts& parts, ThreadPool& pool)
       u_(boundary.grid.nx, boundary.grid.ny),
       v_(boundary.grid.nx, boundary.grid.ny),
       phi_(boundary.grid.nx, boundary.grid.ny),
+      pool_(pool),
       pressure_(boundary, pool),
       advection_(boundary, pool) {
   if (parts.forced) {
     accelerationU_ = Field(boundary.grid.nx, boundary.grid.ny);
     accelerationV_ = Field(boundary.grid.nx, boundary.grid.ny);
   }
-  if (parts.viscous) viscosity_.emplace(boundary, pool);
+  if (parts.viscous) {
+    viscousU_ = viscousV_ = Field(boundary.grid.nx, boundary.grid.ny);
+    viscosity_.emplace(boundary, pool);
+  }
   if (parts.confined) confinement_.emplace(boundary, pool);
 }
 
@@ -25,9 +29,14 @@ void Fluid::boundaryChanged(const Boundary& boundary) {
 
 void Fluid::prepareUncovering(const Boundary& before) { advection_.extend(before, u_, v_); }
 
-void Fluid::clearForces() {
-  accelerationU_.fill(0);
-  accelerationV_.fill(0);
+void Fluid::beginForces() {
+  if (parts_.viscous) {
+    accelerationU_ = viscousU_;
+    accelerationV_ = viscousV_;
+  } else {
+    accelerationU_.fill(0);
+    accelerationV_.fill(0);
+  }
 }
 
 void Fluid::addConfinement(const Boundary& boundary, double strength, double length) {
@@ -44,7 +53,33 @@ void Fluid::advect(const Boundary& boundary, double dt) {
 }
 
 void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {
+  constexpr int kRows = 16;
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const auto step = static_cast<float>(dt), perStep = static_cast<float>(1 / dt);
+  auto takeOut = [&](float* q, float* acceleration) {
+#pragma omp simd
+    for (int i = 0; i <= nx; ++i) {
+      q[i] -= step * acceleration[i];
+      acceleration[i] = q[i];
+    }
+  };
+  auto findAnew = [&](const float* q, float* acceleration) {
+#pragma omp simd
+    for (int i = 0; i <= nx; ++i) acceleration[i] = perStep * (q[i] - acceleration[i]);
+  };
+  pool_.blocks(0, ny + 1, kRows, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      takeOut(u_.row(j), viscousU_.row(j));
+      takeOut(v_.row(j), viscousV_.row(j));
+    }
+  });
   viscosity_->diffuse(boundary, u_, v_, viscosity, dt);
+  pool_.blocks(0, ny + 1, kRows, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      findAnew(u_.row(j), viscousU_.row(j));
+      findAnew(v_.row(j), viscousV_.row(j));
+    }
+  });
 }
 
 void Fluid::drive(const Boundary& boundary, const Field& share, double velocityX, double velocityY) {
@@ -75,7 +110,7 @@ Fluid::ExtendedVelocity Fluid::extended(const Boundary& boundary) const {
 std::size_t Fluid::bytes() const {
   std::size_t bytes = u_.bytes() + v_.bytes() + phi_.bytes() + pressure_.bytes() + advection_.bytes();
   if (parts_.forced) bytes += accelerationU_.bytes() + accelerationV_.bytes();
-  if (viscosity_) bytes += viscosity_->bytes();
+  if (viscosity_) bytes += viscousU_.bytes() + viscousV_.bytes() + viscosity_->bytes();
   if (confinement_) bytes += confinement_->bytes();
   return bytes;
 }

@@ -20,7 +20,7 @@ class Fluid {
   struct Parts {
     bool viscous = false;       // a viscosity that is not 0, now or after an event
     bool confined = false;      // vorticity confinement
-    bool forced = false;        // any acceleration at all: confinement, buoyancy, a force on a region
+    bool forced = false;        // any acceleration: viscosity, confinement, buoyancy, a force on a region
     bool inviscidDrag = false;  // a surface with drag in a fluid without viscosity
   };
 
@@ -32,11 +32,15 @@ class Fluid {
   /// Solids are about to move away from `before`: the faces that they uncover must hold the fluid's velocity.
   void prepareUncovering(const Boundary& before);
 
-  /// Sets all accelerations to 0; the scene's own are then added to accelerationU() and accelerationV(),
-  /// m/s^2.
-  void clearForces();
+  /// Sets the accelerations to what viscosity did in the last step (0 without it); the scene's own are then
+  /// added to accelerationU() and accelerationV(), m/s^2. With the last viscous acceleration and the last
+  /// pressure inside, the stages of a steady flow are in balance: without it each middle projection would
+  /// answer to the missing friction, and the velocity beside a wall, and with it the drag, would be off by a
+  /// share of the step.
+  void beginForces();
   void addConfinement(const Boundary& boundary, double strength, double length);
   void advect(const Boundary& boundary, double dt);
+  /// Takes the last viscous acceleration out again and puts that of this step in, implicitly.
   void diffuse(const Boundary& boundary, double viscosity, double dt);
   /// Drives the fluid inside a shape at a velocity: share (0..1) of each cell's area.
   void drive(const Boundary& boundary, const Field& share, double velocityX, double velocityY);
@@ -73,6 +77,8 @@ class Fluid {
   Parts parts_;
   Field u_, v_, phi_;
   Field accelerationU_, accelerationV_;
+  Field viscousU_, viscousV_;  // acceleration by viscosity in the last step, m/s^2
+  ThreadPool& pool_;
   PressureSolver pressure_;
   Advection advection_;
   std::optional<Viscosity> viscosity_;

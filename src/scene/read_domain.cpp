@@ -72,8 +72,14 @@ void readDomain(MapReader& scene, SceneSpec& spec) {
                  "at most about " + shortest(fits));
     return;
   }
+  constexpr double kSmallestCell = 1e-9, kLargestCell = 1e9, kFewestRows = 4;
+  if (h < kSmallestCell || h > kLargestCell) {
+    reader.error(map.find("size")->mark, "cells of " + shortest(h, "%.3g") +
+                                             " m; their size must be between 1e-9 and 1e9 m");
+    return;
+  }
   if (!isWhole(rows)) {
-    const double below = std::max(1.0, std::floor(rows)), above = std::floor(rows) + 1;
+    const double below = std::max(kFewestRows, std::floor(rows)), above = below + 1;
     reader.error(map.find("size")->mark,
                  "the height of `domain.size` is " + shortest(rows, "%.6g") + " cells of " +
                      shortest(h, "%.6g") + " m, and must be a whole number",
@@ -81,7 +87,7 @@ void readDomain(MapReader& scene, SceneSpec& spec) {
                      shortest(size.x) + ", " + shortest(above * h) + "]");
     return;
   }
-  constexpr double kFewestRows = 4, kMostAlong = 1 << 20;
+  constexpr double kMostAlong = 1 << 20;
   if (std::nearbyint(rows) < kFewestRows || rows > kMostAlong || resolution > kMostAlong) {
     reader.error(where.mark, "a domain of " + shortest(resolution) + " x " + shortest(std::nearbyint(rows)) +
                                  " cells; the height must have 4 to 1048576 of them, the width 8 to 1048576");

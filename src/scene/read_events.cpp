@@ -30,11 +30,14 @@ void readTimes(EventReader& event) {
   if (once && repeated)
     event.reader().error(map.keyMark("every"), "`at` and `every` at once",
                          "at: once; every, from, until: again and again");
-  if (!once && !repeated && map.isMap())
+  if (!once && !repeated && !map.isWrong())
     event.reader().error(map.mark(), "`" + map.name() + "` has no time", "at: 2, or every: 1");
   map.number("at", when.first, kNotNegative);
   if (repeated || !once) {
-    map.number("every", when.every, kPositive);
+    const double least = 1e-3 / event.spec.output.fps;  // a bound on what one step can have to do
+    if (map.number("every", when.every, kPositive) && when.every < least)
+      event.reader().error(map.find("every")->mark,
+                           "`" + event.name("every") + "` is shorter than a thousandth of a frame");
     map.number("from", when.first, kNotNegative);
     if (map.number("until", when.until, kNotNegative) && when.until < when.first)
       event.reader().error(map.find("until")->mark, "`" + map.name() + "` ends before it starts");
@@ -160,7 +163,7 @@ void readEvent(Reader& reader, const YamlNode& node, const std::string& name, Sc
   }
   const std::size_t before = reader.errors();
   map.finish();
-  if (actions == 0 && map.isMap() && reader.errors() == before)
+  if (actions == 0 && !map.isWrong() && reader.errors() == before)
     reader.error(map.mark(), "`" + name + "` does nothing", "one of " + all);
 }
 

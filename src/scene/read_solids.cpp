@@ -157,7 +157,7 @@ ProbeSpec readProbe(Reader& reader, const YamlNode& node, const std::string& nam
   if (map.vector("at", at)) probe.at = at;
   if (const YamlNode* region = map.find("region"))
     probe.region = readPlacedShape(reader, *region, inside(name, "region"));
-  if (map.isMap() && map.has("at") == map.has("region"))
+  if (!map.isWrong() && map.has("at") == map.has("region"))
     reader.error(map.mark(), "`" + name + "` must have either `at` or `region`");
   if (map.text("follow", probe.follow)) checkSolidName(reader, *map.find("follow"), spec, probe.follow);
   map.finish();

@@ -67,6 +67,8 @@ class MapReader {
   const YamlMark& mark() const { return node_.mark; }
   const std::string& name() const { return name_; }
   bool isMap() const { return isMap_; }
+  /// Neither a map nor nothing at all: has been reported.
+  bool isWrong() const { return !isMap_ && node_.kind != YamlNode::Kind::null; }
 
   /// The value of a key, nullptr if it is missing or null.
   const YamlNode* find(const std::string& key);

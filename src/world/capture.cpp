@@ -79,10 +79,10 @@ void World::capture(Snapshot& snapshot) const {
     snapshot.smoke.clear();
   }
 
-  if (fluid_ && shows(view, LayerKind::pressure)) capturePressure(snapshot.pressure);
-  if (fluid_ && (shows(view, LayerKind::vorticity) || shows(view, LayerKind::speed) ||
-                 shows(view, LayerKind::velocity)))
-    captureVelocity(shows(view, LayerKind::vorticity), snapshot);
+  auto wants = [&](LayerKind kind) { return fluid_ && (options_.allFields || shows(view, kind)); };
+  if (wants(LayerKind::pressure)) capturePressure(snapshot.pressure);
+  if (wants(LayerKind::vorticity) || wants(LayerKind::speed) || wants(LayerKind::velocity))
+    captureVelocity(wants(LayerKind::vorticity), snapshot);
 
   snapshot.solids.clear();
   for (int k = 0; k < solids_.count(); ++k)

@@ -79,6 +79,21 @@ FluidTotals fluidTotals(const Boundary& boundary, const Fluid& fluid, double den
   return totals;
 }
 
+void listSolids(const SolidScripts& solids, std::vector<BodyFigures>& out) {
+  for (int k = 0; k < solids.count(); ++k) {
+    if (!solids.spec(k).report) continue;
+    const Vec2 centre = transformed(solids.mass(k).centre, solids.pose(k));
+    const MovingSolid& moving = solids.moving()[k];
+    BodyFigures body;
+    body.name = solids.spec(k).name;
+    body.position = centre;
+    body.angleDegrees = degrees(solids.pose(k).angleRad);
+    body.velocity = moving.velocityAt(centre);
+    body.spinDegrees = degrees(moving.spin);
+    out.push_back(body);
+  }
+}
+
 void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScripts& solids,
                   double pressureScale, double dynamicViscosity, Field& pressure,
                   std::vector<BodyFigures>& out) {
@@ -88,20 +103,16 @@ void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScrip
     for (int i = 0; i < grid.nx; ++i) pressure(i, j) = static_cast<float>(pressureScale * fluid.phi()(i, j));
   const std::vector<SurfaceForce> forces =
       surfaceForces(boundary, solids.moving(), pressure, fluid.u(), fluid.v(), dynamicViscosity);
+  const std::size_t first = out.size();
+  listSolids(solids, out);
+  auto body = out.begin() + static_cast<std::ptrdiff_t>(first);
   for (int k = 0; k < solids.count(); ++k) {
     if (!solids.spec(k).report) continue;
-    const MovingSolid& moving = solids.moving()[k];
-    const Vec2 centre = transformed(solids.mass(k).centre, solids.pose(k));
-    BodyFigures body;
-    body.name = solids.spec(k).name;
-    body.position = centre;
-    body.angleDegrees = degrees(solids.pose(k).angleRad);
-    body.velocity = moving.velocityAt(centre);
-    body.spinDegrees = degrees(moving.spin);
-    body.force = forces[k].force;
+    body->force = forces[k].force;
     // About the centre of mass instead of the origin.
-    body.torque = forces[k].torque - cross(centre - moving.origin, forces[k].force);
-    out.push_back(body);
+    body->torque =
+        forces[k].torque - cross(body->position - solids.moving()[k].origin, forces[k].force);
+    ++body;
   }
 }
 

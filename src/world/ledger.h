@@ -17,7 +17,10 @@ struct FluidTotals {
 /// Sums over the open faces, weighted by their open share (a face stands for one cell's area), in float64.
 FluidTotals fluidTotals(const Boundary& boundary, const Fluid& fluid, double density, ThreadPool& pool);
 
-/// Forces of the fluid on the solids with `report: true`; `pressure` is scratch memory.
+/// The solids with `report: true` and their motion, without forces.
+void listSolids(const SolidScripts& solids, std::vector<BodyFigures>& out);
+
+/// The same with the forces of the fluid on them; `pressure` is scratch memory.
 void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScripts& solids,
                   double pressureScale, double dynamicViscosity, Field& pressure,
                   std::vector<BodyFigures>& out);

@@ -19,10 +19,14 @@ bool anyEvent(const SceneSpec& spec) {
 
 }  // namespace
 
+bool concerns(const std::string& path, const std::string& key) {
+  return isPrefix(path, key) || isPrefix(key, path);
+}
+
 bool eventSets(const SceneSpec& spec, const std::string& path) {
   return std::any_of(spec.events.begin(), spec.events.end(), [&](const EventSpec& event) {
     const auto* set = std::get_if<SetAction>(&event.action);
-    return set && (isPrefix(set->path, path) || isPrefix(path, set->path));
+    return set && concerns(set->path, path);
   });
 }
 
@@ -35,17 +39,18 @@ Needs needsOf(const SceneSpec& spec) {
   needs.fluid = spec.hasFluid;
   if (!needs.fluid) return needs;
 
-  needs.smoke = !spec.smoke.sources.empty() || anyEvent<BurstAction>(spec);
+  needs.smoke = !spec.smokeColors().empty();
   needs.buoyancy = needs.smoke && (spec.smoke.buoyancy != 0 || eventSets(spec, "smoke.buoyancy"));
-  needs.sourcesDrive = !spec.smoke.sources.empty() &&
+  needs.sourcesDrive = needs.smoke &&
                        (eventSets(spec, "smoke.sources") ||
                         std::any_of(spec.smoke.sources.begin(), spec.smoke.sources.end(),
                                     [](const SourceSpec& source) { return source.velocity.has_value(); }));
   needs.parts.viscous = spec.fluid.viscosity > 0 || eventSets(spec, "fluid.viscosity");
   needs.parts.confined = spec.fluid.vorticity != 0 || eventSets(spec, "fluid.vorticity");
-  needs.parts.forced = needs.parts.confined || needs.buoyancy || anyEvent<ForceAction>(spec);
+  needs.parts.forced =
+      needs.parts.viscous || needs.parts.confined || needs.buoyancy || anyEvent<ForceAction>(spec);
   needs.parts.inviscidDrag =
-      !needs.parts.viscous &&
+      (spec.fluid.viscosity == 0 || eventSets(spec, "fluid.viscosity")) &&
       (eventSets(spec, "solids") || std::any_of(spec.solids.begin(), spec.solids.end(),
                                                 [](const SolidSpec& solid) { return solid.drag > 0; }));
   return needs;

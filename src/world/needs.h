@@ -21,6 +21,9 @@ struct Needs {
 
 Needs needsOf(const SceneSpec& spec);
 
+/// Does a setting at `path` change this key, or one above or below it?
+bool concerns(const std::string& path, const std::string& key);
+
 /// Does an event set this key, or one above or below it?
 bool eventSets(const SceneSpec& spec, const std::string& path);
 

@@ -41,7 +41,7 @@ Plan planOf(const SceneSpec& spec) {
     fields = 8 + 8 + 8 * 4.0 / 3;
     if (needs.parts.forced) fields += 2;
     if (needs.parts.confined) fields += 2;
-    if (needs.parts.viscous) fields += 8;
+    if (needs.parts.viscous) fields += 10;
     if (needs.smoke) fields += 3.0 * plan.smokeColors + 6 + static_cast<double>(spec.smoke.sources.size());
   }
   plan.memoryMb = fields * 4 * (plan.nx + 32.0) * (plan.ny + 8.0) / (1024 * 1024);

@@ -36,7 +36,6 @@ SceneDocument coarsened(const SceneDocument& document, const SceneSpec& spec, lo
   coarse.set("time.step", "1/(" + fps + "*" + std::to_string(spec.time.stepsPerFrame / longer) + ")",
              nowhere);
   coarse.set("time.duration", std::to_string(frames) + "/" + fps, nowhere);
-  coarse.set("view.layers", "[pressure, vorticity, speed]", nowhere);
   return coarse;
 }
 
@@ -102,7 +101,7 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
   if (!spec.hasFluid || !wanted.any()) return ranges;
 
   const long frames = std::max(1L, spec.time.steps / spec.time.stepsPerFrame);
-  World world(coarsened(document, spec, frames), {threads, false});
+  World world(coarsened(document, spec, frames), {.threads = threads, .allFields = true});
   Snapshot snapshot;
   std::vector<float> scratch, pressure, vorticity, speed;
   for (long frame = 1; frame <= frames; ++frame) {

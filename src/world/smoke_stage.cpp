@@ -10,6 +10,11 @@ SmokeStage::SmokeStage(const SceneSpec& spec, const Boundary& boundary, double t
       pool_(pool),
       colors_(spec.smokeColors()),
       smoke_(boundary, pool, static_cast<int>(colors_.size())) {
+  placeSources(spec, boundary);
+}
+
+void SmokeStage::placeSources(const SceneSpec& spec, const Boundary& boundary) {
+  sources_.clear();
   for (const SourceSpec& source : spec.smoke.sources) {
     Source made{source, channelOf(source.color), Field(grid_.nx, grid_.ny)};
     coverShare(grid_, outlinesOf(source.shape, tolerance_), made.share);
@@ -22,10 +27,6 @@ int SmokeStage::channelOf(const Color& color) const {
   const auto found = std::find(colors_.begin(), colors_.end(), color);
   checkInvariant(found != colors_.end(), "every colour of smoke has a channel");
   return static_cast<int>(found - colors_.begin());
-}
-
-void SmokeStage::adopt(const SceneSpec& spec) {
-  for (std::size_t k = 0; k < sources_.size(); ++k) sources_[k].spec = spec.smoke.sources[k];
 }
 
 void SmokeStage::emit(const Boundary& boundary, double time, double dt) {

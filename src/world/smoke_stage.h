@@ -15,8 +15,8 @@ class SmokeStage {
   /// `tolerance`: how far the outline of a round source may be from the curve, metres.
   SmokeStage(const SceneSpec& spec, const Boundary& boundary, double tolerance, ThreadPool& pool);
 
-  /// Takes over rates, times and velocities that an event has changed.
-  void adopt(const SceneSpec& spec);
+  /// Takes over the scene's sources: at the start, and when an event has changed them.
+  void placeSources(const SceneSpec& spec, const Boundary& boundary);
   /// Adds what the sources give in [time, time + dt).
   void emit(const Boundary& boundary, double time, double dt);
   void burst(const Boundary& boundary, const BurstAction& burst);

@@ -37,7 +37,7 @@ void World::step() {
   clock_.begin();
   fireEvents();
   clock_.stage("events");
-  solids_.move(time(), dt);
+  moveSolids();
   clock_.stage("scripts");
   if (fluid_) {
     coverGrid(solids_.shapesMoved());
@@ -72,9 +72,7 @@ void World::step() {
 void World::buildFluid() {
   const Grid& grid = boundary_.grid;
   for (int s = 0; s < 4; ++s) {
-    const WallSpec& wall = spec_.domain.walls[s];
-    boundary_.sides[s].kind = wall.kind;
-    wallsDependOnTime_ |= wall.velocity[0].dependsOnTime() || wall.velocity[1].dependsOnTime();
+    boundary_.sides[s].kind = spec_.domain.walls[s].kind;
   }
   setWalls(0);
   onGrid_.cover(solids_.moving(), true, boundary_);
@@ -98,9 +96,11 @@ void World::buildFluid() {
 
 void World::setWalls(double time) {
   const Grid& grid = boundary_.grid;
+  wallsDependOnTime_ = false;
   for (int s = 0; s < 4; ++s) {
     const bool vertical = s < 2;  // left and right
     const auto& velocity = spec_.domain.walls[s].velocity;
+    wallsDependOnTime_ |= velocity[0].dependsOnTime() || velocity[1].dependsOnTime();
     SideFlow& side = boundary_.sides[s];
     const int faces = vertical ? grid.ny : grid.nx;
     side.u.resize(faces);
@@ -159,9 +159,19 @@ void World::adoptSettings(const SetAction& action) {
       solids_.motionReplaced(k, time());
   }
   if (!fluid_) return;
-  if (smoke_) smoke_->adopt(spec_);
+  if (smoke_ && concerns(action.path, "smoke.sources")) smoke_->placeSources(spec_, boundary_);
   setWalls(time() + spec_.time.step);
   onGrid_.cover(solids_.moving(), false, boundary_);
+}
+
+void World::moveSolids() {
+  solids_.move(time(), spec_.time.step);
+  for (int k = 0; solids_.shapesMoved() && k < solids_.count(); ++k) {
+    const Pose& pose = solids_.pose(k);
+    if (!std::isfinite(pose.position.x) || !std::isfinite(pose.position.y) || !std::isfinite(pose.angleRad))
+      fail("the motion of the solid `" + solids_.spec(k).name + "` is not a finite number",
+           "try another expression, such as one without a division by 0");
+  }
 }
 
 // --- the fluid's stages
@@ -178,7 +188,7 @@ void World::coverGrid(bool shapesMoved) {
 
 void World::addForces() {
   const Grid& grid = boundary_.grid;
-  fluid_->clearForces();
+  fluid_->beginForces();
   if (spec_.fluid.vorticity != 0)
     fluid_->addConfinement(boundary_, spec_.fluid.vorticity, std::min(grid.width(), grid.height()) / 256);
   if (smoke_ && spec_.smoke.buoyancy != 0)
@@ -229,6 +239,7 @@ void World::fail(const std::string& what, const std::string& hint) const {
 void World::recordFigures() {
   const double pressureScale = spec_.fluid.density * boundary_.grid.h / spec_.time.step;
   figures_.bodies.clear();
+  if (!fluid_ && needs_.reports) listSolids(solids_, figures_.bodies);
   if (fluid_) {
     const FluidTotals totals = fluidTotals(boundary_, *fluid_, spec_.fluid.density, pool_);
     figures_.momentum = totals.momentum;

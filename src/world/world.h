@@ -27,6 +27,7 @@ class World {
   struct Options {
     int threads = 1;
     bool figures = false;  // also momentum, energy, probes and forces of each step
+    bool allFields = false;  // capture pressure, vorticity and velocity whatever the layers are
   };
 
   /// Throws SceneError if the scene is wrong.
@@ -72,6 +73,7 @@ class World {
   void setWalls(double time);
   void fireEvents();
   void adoptSettings(const SetAction& action);
+  void moveSolids();
   void coverGrid(bool shapesMoved);
   void addForces();
   void projectFluid();
