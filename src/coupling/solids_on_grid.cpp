@@ -76,7 +76,7 @@ void SolidsOnGrid::placeCopies(const std::vector<MovingSolid>& solids, const Bou
       }
     if (lo.x > hi.x) continue;
     // Images that reach the domain, or a cell beyond it: links look that far.
-    auto range = [&](bool periodic, double from, double to, double size) {
+    auto images = [&](bool periodic, double from, double to, double size) {
       Range range{std::ceil((-grid.h - to) / size), std::floor((size + grid.h - from) / size)};
       if (!periodic) return Range{std::max(range.first, 0.0), std::min(range.last, 0.0)};
       if (range.last - range.first < kMostCopies) return range;
@@ -84,12 +84,12 @@ void SolidsOnGrid::placeCopies(const std::vector<MovingSolid>& solids, const Bou
       return Range{middle - kMostCopies / 2, middle + kMostCopies / 2};
     };
     // None for a solid far away, however far: then no rounding of its outline can do harm.
-    const Range alongX = range(boundary.periodicX(), lo.x, hi.x, grid.width()),
-                alongY = range(boundary.periodicY(), lo.y, hi.y, grid.height());
+    const Range alongX = images(boundary.periodicX(), lo.x, hi.x, grid.width()),
+                alongY = images(boundary.periodicY(), lo.y, hi.y, grid.height());
     for (int y = 0; alongY.first + y <= alongY.last && y <= kMostCopies; ++y)
       for (int x = 0; alongX.first + x <= alongX.last && x <= kMostCopies; ++x)
-        copies_.push_back({static_cast<int>(k),
-                           {(alongX.first + x) * grid.width(), (alongY.first + y) * grid.height()}});
+        copies_.push_back(
+            {static_cast<int>(k), {(alongX.first + x) * grid.width(), (alongY.first + y) * grid.height()}});
   }
   outlines_.resize(copies_.size());
   for (std::size_t c = 0; c < copies_.size(); ++c) {
