@@ -74,8 +74,8 @@ void readDomain(MapReader& scene, SceneSpec& spec) {
   }
   constexpr double kSmallestCell = 1e-9, kLargestCell = 1e9, kFewestRows = 4;
   if (h < kSmallestCell || h > kLargestCell) {
-    reader.error(map.find("size")->mark, "cells of " + shortest(h, "%.3g") +
-                                             " m; their size must be between 1e-9 and 1e9 m");
+    reader.error(map.find("size")->mark,
+                 "cells of " + shortest(h, "%.3g") + " m; their size must be between 1e-9 and 1e9 m");
     return;
   }
   if (!isWhole(rows)) {

@@ -110,8 +110,7 @@ void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScrip
     if (!solids.spec(k).report) continue;
     body->force = forces[k].force;
     // About the centre of mass instead of the origin.
-    body->torque =
-        forces[k].torque - cross(body->position - solids.moving()[k].origin, forces[k].force);
+    body->torque = forces[k].torque - cross(body->position - solids.moving()[k].origin, forces[k].force);
     ++body;
   }
 }

@@ -99,22 +99,19 @@ void World::setWalls(double time) {
   wallsDependOnTime_ = false;
   for (int s = 0; s < 4; ++s) {
     const bool vertical = s < 2;  // left and right
-    const auto& velocity = spec_.domain.walls[s].velocity;
-    wallsDependOnTime_ |= velocity[0].dependsOnTime() || velocity[1].dependsOnTime();
+    const WallSpec& wall = spec_.domain.walls[s];
+    wallsDependOnTime_ |= wall.velocity[0].dependsOnTime() || wall.velocity[1].dependsOnTime();
     SideFlow& side = boundary_.sides[s];
     const int faces = vertical ? grid.ny : grid.nx;
     side.u.resize(faces);
     side.v.resize(faces);
     for (int k = 0; k < faces; ++k) {
       const double along = (k + 0.5) * grid.h;
-      const double x = s == 0   ? 0
-                       : s == 1 ? grid.width()
-                                : along,
-                   y = s == 2   ? 0
-                       : s == 3 ? grid.height()
-                                : along;
-      side.u[k] = static_cast<float>(velocity[0](x, y, time));
-      side.v[k] = static_cast<float>(velocity[1](x, y, time));
+      const Vec2 at =
+          vertical ? Vec2{s == 0 ? 0 : grid.width(), along} : Vec2{along, s == 2 ? 0 : grid.height()};
+      const Vec2 half = 0.5 * grid.h * (vertical ? Vec2{0, 1} : Vec2{1, 0});
+      side.u[k] = static_cast<float>(wall.mean(0, at, half, time));
+      side.v[k] = static_cast<float>(wall.mean(1, at, half, time));
     }
   }
 }

@@ -26,7 +26,7 @@ class World {
  public:
   struct Options {
     int threads = 1;
-    bool figures = false;  // also momentum, energy, probes and forces of each step
+    bool figures = false;    // also momentum, energy, probes and forces of each step
     bool allFields = false;  // capture pressure, vorticity and velocity whatever the layers are
   };
 

@@ -212,6 +212,12 @@ TEST(SceneErrors, SizesThatAreNoWholeCellsNameTheNearest) {
   // Truth: 1.01 m of cells of 2/64 m are 32.32; 1 m (32 cells) and 1.03125 m (33) are the neighbours.
   expectFault("domain: {size: [2, 1.01], resolution: 64}\n",
               {"s.yaml:1:16: ", "32.32 cells", "[2, 1] or [2, 1.03125]"});
+  // The least is four cells, of 2/64 m.
+  expectFault("domain: {size: [2, 0.01], resolution: 64}\n", {"s.yaml:1:16: ", "[2, 0.125] or [2, 0.15625]"});
+  expectFault("domain: {size: [2e300, 1e300], resolution: 64}\n",
+              {"s.yaml:1:16: ", "between 1e-9 and 1e9 m"});
+  expectFault("domain: {size: [2e-300, 1e-300], resolution: 64}\n",
+              {"s.yaml:1:16: ", "between 1e-9 and 1e9 m"});
 }
 
 TEST(SceneErrors, MemoryThatCannotBeHadIsNamed) {
@@ -237,6 +243,10 @@ TEST(SceneErrors, WallsThatCannotBe) {
   expectFault(kDomain + "walls: {left: {inflow: [-1, 0]}}\n",
               {"s.yaml:2:9: ", "without a way out", "flow out"});
   expectFault(kDomain + "walls: {left: {inflow: [\"sin(t)\", 0]}}\n", {"s.yaml:2:9: ", "without a way out"});
+  expectFault(kDomain + "walls: {left: {inflow: [1, 0]}, right: {inflow: [\"5.99*y*(1-y)\", 0]}}\n",
+              {"s.yaml:2:9: ", "without a way out", "flow in"});
+  EXPECT_EQ(problemsOf(kDomain + "walls: {left: {inflow: [1, 0]}, right: {inflow: [\"6*y*(1-y)\", 0]}}\n"),
+            "");
   expectFault(kDomain + "walls: {left: inflow}\n", {"s.yaml:2:15: ", "needs a velocity"});
   expectFault(kDomain + "walls: {left: periodic}\n",
               {"s.yaml:2:9: ", "its opposite", "walls.right: periodic"});
@@ -268,6 +278,7 @@ TEST(SceneErrors, EventsThatCannotBe) {
   expectFault(head + "{at: 1, until: 2, caption: a}\n", {"s.yaml:4:11: ", "`until` goes with `every`"});
   expectFault(head + "{at: -1, caption: a}\n", {"s.yaml:4:8: ", "0 or larger"});
   expectFault(head + "{every: 0, caption: a}\n", {"s.yaml:4:11: ", "larger than 0"});
+  expectFault(head + "{every: 1e-9, caption: a}\n", {"s.yaml:4:11: ", "a thousandth of a frame"});
   expectFault(head + "{at: 1, set: {fluid.density: 2}, caption: a}\n", {"s.yaml:4:36: a second action"});
   expectFault(head + "{at: 1, hide: car}\n", {"s.yaml:4:17: ", "no solid is named `car`"});
   expectFault(head + "{at: 1, force: {circle: {radius: 1}}}\n",
@@ -286,6 +297,15 @@ TEST(SceneErrors, EventsThatCannotBe) {
   expectFault(kDomain + "events:\n- {at: 1, set: {fluid.vorticity: 1}}\n", {"s.yaml:3:17: ", "no fluid"});
   expectFault(kDomain + "events:\n- {at: 1, burst: {circle: {radius: 1}}}\n",
               {"s.yaml:3:18: ", "needs a fluid"});
+}
+
+TEST(SceneErrors, EmptyItemsOfListsAreNamed) {
+  // Truth: an event or a probe without any key says nothing at all, whether written as {} or left out.
+  for (const char* item : {"{}", "~"}) {
+    EXPECT_NE(problemsOf(kDomain + "events: [" + item + "]\n").find("`events.0` does nothing"),
+              std::string::npos);
+    expectFault(kDomain + "probes: [" + item + "]\n", {"must have either `at` or `region`"});
+  }
 }
 
 TEST(SceneErrors, WhatThisVersionLacksIsNamed) {
