@@ -257,6 +257,11 @@ void SmokeVolumes::finish(const Boundary& b) {
     for (int k = 0; k < clusters_.count(); ++k)
       for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m) rest(*m);
     for (const SmokeTransfer& t : plan_.exchanged()) rest(t.from), rest(t.to);
+  } else if (!measure_.empty()) {
+    // The next step may merge other cells: these are measured by themselves again.
+    for (int k = 0; k < clusters_.count(); ++k)
+      for (const int* m = clusters_.begin(k); m != clusters_.end(k); ++m)
+        measure_(cells_.i(*m), cells_.j(*m)) = b.volume(cells_.i(*m), cells_.j(*m));
   }
   loose_ = looseAfter_;
   if (moved_) {

@@ -132,6 +132,26 @@ TEST(World, StateIsTheSameToTheBitForOneAndTwoThreads) {
   }
 }
 
+TEST(World, SmokeValuesAddUpToItsMass) {
+  // Truth: smoke is its value times the open area, cell by cell; none may be shown thinner than it is,
+  // whatever cells a step has merged beside the car.
+  SceneDocument document = SceneDocument::load(SMOKEBOX_SOURCE_DIR "/scenes/paper/fig20-car.yaml");
+  document.set("domain.resolution", "256", {});
+  document.set("time.step", "1/60", {});
+  World world(document, {.threads = 2, .figures = true});
+  const Grid& grid = world.boundary().grid;
+  for (int k = 0; k < 240; ++k) {
+    world.step();
+    double sum = 0;
+    for (int c = 0; c < world.smoke()->smoke().channels(); ++c)
+      for (int j = 0; j < grid.ny; ++j)
+        for (int i = 0; i < grid.nx; ++i)
+          sum += double{world.smoke()->smoke().value(c)(i, j)} * world.boundary().volume(i, j);
+    const double mass = world.figures().smoke.mass;
+    ASSERT_NEAR(sum * grid.h * grid.h, mass, 1e-4 * mass) << "step " << k + 1;
+  }
+}
+
 TEST(World, AMirrorSymmetricSceneStaysSymmetric) {
   // Truth: mirrored in the line x = 1 the scene is itself, so v is even and u is odd.
   World world = worldOf(
