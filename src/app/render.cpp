@@ -39,6 +39,16 @@ std::vector<std::string> outputNames(const RenderOptions& options, const SceneSp
   return options.outputs;
 }
 
+void refuseOddSize(const std::vector<std::string>& outputs, const SceneSpec& spec) {
+  const int width = spec.output.width, height = spec.output.height;
+  for (const std::string& output : outputs)
+    if (outputKind(output) == OutputKind::mp4 && (width % 2 || height % 2))
+      throw UsageError(output + ": " + std::to_string(width) + "x" + std::to_string(height) +
+                       ": H.264 needs even width and height; try --size " +
+                       std::to_string(width + width % 2) + "x" + std::to_string(height + height % 2) +
+                       ", or .mkv");
+}
+
 std::vector<FilmOutput> openOutputs(const std::vector<std::string>& names, const FrameRequest& request,
                                     const FilmFormat& format) {
   std::vector<FilmOutput> outputs;
@@ -86,6 +96,7 @@ int runRender(const RenderOptions& options) {
                            {"scene_hash", document.hash()},
                            {"program", "smokebox " + programVersion()}}};
   const std::vector<std::string> names = outputNames(options, spec);
+  refuseOddSize(names, spec);
   std::vector<FilmOutput> outputs = openOutputs(names, request, format);
   std::optional<StatsFile> stats;
   if (!options.stats.empty()) stats.emplace(options.stats);

@@ -77,6 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUsage{{"render", "scene.yaml", "--at", "nan", "-o", "a.png"}, "--at"},
                     WrongUsage{{"render", "scene.yaml", "--at", "0.1", "-o", "a.mp4"}, "still"},
                     WrongUsage{{"render", "scene.yaml", "-o", "a.mp4", "-o", "a.mp4"}, "twice"},
+                    WrongUsage{{"render", "scene.yaml", "--size", "65x33", "-o", "a.mp4"}, "even"},
                     WrongUsage{{"render", "scene.yaml", "-o", "a.avi"}, "'.avi'"},
                     WrongUsage{{"render", "scene.yaml", "-o", "a"}, "no ending"},
                     WrongUsage{{"render", "scene.yaml", "-o", "/dev/full"}, "no ending"},
