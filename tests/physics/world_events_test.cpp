@@ -1,6 +1,7 @@
 // What events may do to a running world, and motions that go wrong: scenes whose outcome is known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "world/ranges.h"
@@ -131,6 +132,19 @@ TEST(WorldEvents, LayersCanBeSetWhileRangesAreFound) {
                      "test.yaml"),
                  1);
   EXPECT_EQ(ranges.speed[1], 1);
+}
+
+TEST(WorldCapture, ASolidOnAPeriodicSideIsSeenOnBoth) {
+  // Truth: a disk of radius 0.1 at x = 0.95 also fills what is left of x = 0.05.
+  World world = worldOf(
+      "walls: {left: periodic, right: periodic}\nfluid: {}\n"
+      "solids: [{name: a, shape: {circle: {radius: 0.1}}, position: [0.95, 0.5]}]\n");
+  Snapshot snapshot;
+  world.capture(snapshot);
+  ASSERT_EQ(snapshot.solids.size(), 2u);
+  double right = -1;
+  for (const Vec2 point : snapshot.solids[1].outlines[0]) right = std::max(right, point.x);
+  EXPECT_NEAR(right, 0.05, 1e-3);
 }
 
 }  // namespace
