@@ -71,6 +71,27 @@ double speedReach(const Snapshot& snapshot, std::vector<float>& scratch) {
   return quantile(scratch, 0.999);
 }
 
+// What each frame of the film reaches.
+struct Reaches {
+  std::vector<float> pressure, vorticity, speed;
+};
+
+void watchFilm(const SceneDocument& document, const SceneSpec& spec, int threads,
+               const std::function<void(long, long)>& eachFrame, Reaches& reaches) {
+  const long frames = std::max(1L, spec.time.steps / spec.time.stepsPerFrame);
+  World world(coarsened(document, spec, frames), {.threads = threads, .allFields = true});
+  Snapshot snapshot;
+  std::vector<float> scratch;
+  for (long frame = 1; frame <= frames; ++frame) {
+    for (int k = 0; k < world.spec().time.stepsPerFrame; ++k) world.step();
+    world.capture(snapshot);
+    reaches.pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
+    reaches.vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
+    reaches.speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
+    if (eachFrame) eachFrame(frame, frames);
+  }
+}
+
 }  // namespace
 
 double niceCeiling(double value) {
@@ -100,27 +121,19 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
   if (eventSets(spec, "view.layers")) wanted = {true, true, true};
   if (!spec.hasFluid || !wanted.any()) return ranges;
 
-  const long frames = std::max(1L, spec.time.steps / spec.time.stepsPerFrame);
-  World world(coarsened(document, spec, frames), {.threads = threads, .allFields = true});
-  Snapshot snapshot;
-  std::vector<float> scratch, pressure, vorticity, speed;
-  for (long frame = 1; frame <= frames; ++frame) {
-    for (int k = 0; k < world.spec().time.stepsPerFrame; ++k) world.step();
-    world.capture(snapshot);
-    if (!snapshot.pressure.empty())
-      pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
-    if (!snapshot.vorticity.empty())
-      vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
-    if (!snapshot.velocityX.empty()) speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
-    if (eachFrame) eachFrame(frame, frames);
+  Reaches reaches;
+  try {
+    watchFilm(document, spec, threads, eachFrame, reaches);
+  } catch (const SimulationError&) {
+    // The real run has smaller steps and cells, and may fare better: what was seen so far will do.
   }
   auto settle = [](std::vector<float>& reached, bool want, std::array<double, 2>& range, bool bothSigns) {
     const double top = want ? quantile(reached, 0.95) : 0;
     if (top > 0) range = {bothSigns ? -niceCeiling(top) : 0, niceCeiling(top)};
   };
-  settle(pressure, wanted.pressure, ranges.pressure, true);
-  settle(vorticity, wanted.vorticity, ranges.vorticity, true);
-  settle(speed, wanted.speed, ranges.speed, false);
+  settle(reaches.pressure, wanted.pressure, ranges.pressure, true);
+  settle(reaches.vorticity, wanted.vorticity, ranges.vorticity, true);
+  settle(reaches.speed, wanted.speed, ranges.speed, false);
   return ranges;
 }
 

@@ -158,8 +158,8 @@ TEST_F(Render, FullDiskIsAnInputOutputError) {
 TEST_F(Render, OddSizeIsRefusedBeforeTheRun) {
   // H.264 cannot have it: the message names a size that goes. The lossless form takes it.
   const RunResult run = render({"-o", "a.mp4", "--size", "65x32"});
-  EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.err.find("64x32"), std::string::npos) << run.err;
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("66x32"), std::string::npos) << run.err;
   EXPECT_TRUE(written().empty());
   EXPECT_EQ(render({"-o", "a.mkv", "--size", "65x33"}).status, 0);
 }
