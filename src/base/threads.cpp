@@ -18,7 +18,7 @@ struct ThreadPool::State {
   // `ticket`: generation of the loop, whether it may still be joined, and how many workers are in it.
   static constexpr std::uint64_t kActive = 0xffff, kOpen = 0x10000;
   static constexpr int kGenerationShift = 17;
-  static constexpr int kSpins = 2000;
+  static constexpr int kSpins = 200;
 
   std::atomic<std::uint64_t> ticket{0};
   std::atomic<int> next{0}, sleepers{0};
