@@ -11,15 +11,27 @@ namespace smokebox {
 namespace {
 
 // Enough that a frame that takes longer than others does not stop its neighbours.
-constexpr int kSnapshots = 3, kPictures = 3;
+constexpr int kFrames = 3, kPictures = 3;
 
 }  // namespace
 
-FilmPipeline::FilmPipeline(int width, int height, std::vector<FilmOutput> outputs)
+std::function<PaintFrame()> paintOnePanel(int width, int height) {
+  return [=]() -> PaintFrame {
+    const auto renderer = std::make_shared<Renderer>(width, height);
+    return [renderer](const FilmFrame& frame, Image& image) { renderer->draw(frame.panels[0], image); };
+  };
+}
+
+FilmPipeline::FilmPipeline(int panels, std::vector<FilmOutput> outputs,
+                           std::function<PaintFrame()> makePainter)
     : outputs_(std::move(outputs)) {
-  for (int k = 0; k < kSnapshots; ++k) freeSnapshots_.send(std::make_unique<Snapshot>());
+  for (int k = 0; k < kFrames; ++k) {
+    auto frame = std::make_unique<FilmFrame>();
+    frame->panels.resize(panels);
+    freeFrames_.send(std::move(frame));
+  }
   for (int k = 0; k < kPictures; ++k) freePictures_.send(std::make_unique<Picture>());
-  drawing_ = std::thread([this, width, height] { guarded([&] { draw(width, height); }); });
+  drawing_ = std::thread([this, make = std::move(makePainter)] { guarded([&] { draw(make); }); });
   encoding_ = std::thread([this] { guarded([&] { encode(); }); });
 }
 
@@ -29,30 +41,30 @@ FilmPipeline::~FilmPipeline() {
   if (encoding_.joinable()) encoding_.join();
 }
 
-std::unique_ptr<Snapshot> FilmPipeline::next() {
-  std::optional<std::unique_ptr<Snapshot>> snapshot = freeSnapshots_.receive();
-  if (!snapshot) rethrow();
-  return std::move(*snapshot);
+std::unique_ptr<FilmFrame> FilmPipeline::next() {
+  std::optional<std::unique_ptr<FilmFrame>> frame = freeFrames_.receive();
+  if (!frame) rethrow();
+  return std::move(*frame);
 }
 
-void FilmPipeline::submit(std::unique_ptr<Snapshot> snapshot) { snapshots_.send(std::move(snapshot)); }
+void FilmPipeline::submit(std::unique_ptr<FilmFrame> frame) { frames_.send(std::move(frame)); }
 
 void FilmPipeline::finish() {
-  snapshots_.close();
+  frames_.close();
   drawing_.join();
   encoding_.join();
   if (error_) std::rethrow_exception(error_);
 }
 
-void FilmPipeline::draw(int width, int height) {
-  Renderer renderer(width, height);
-  while (auto snapshot = snapshots_.receive()) {
+void FilmPipeline::draw(const std::function<PaintFrame()>& makePainter) {
+  const PaintFrame paint = makePainter();
+  while (auto frame = frames_.receive()) {
     auto picture = freePictures_.receive();
     if (!picture) return;
-    renderer.draw(**snapshot, (*picture)->image);
-    (*picture)->frame = (*snapshot)->frame;
+    paint(**frame, (*picture)->image);
+    (*picture)->frame = (*frame)->number;
     pictures_.send(std::move(*picture));
-    freeSnapshots_.send(std::move(*snapshot));
+    freeFrames_.send(std::move(*frame));
   }
   pictures_.close();
 }
@@ -86,8 +98,8 @@ void FilmPipeline::guarded(Stage&& stage) {
 }
 
 void FilmPipeline::breakOff() {
-  freeSnapshots_.breakOff();
-  snapshots_.breakOff();
+  freeFrames_.breakOff();
+  frames_.breakOff();
   freePictures_.breakOff();
   pictures_.breakOff();
 }

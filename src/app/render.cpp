@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -109,7 +110,7 @@ int runRender(const RenderOptions& options) {
   Progress progress(last + 1, options.quiet);
   SummaryFigures summary;
   {
-    FilmPipeline pipeline(format.width, format.height, std::move(outputs));
+    FilmPipeline pipeline(1, std::move(outputs), paintOnePanel(format.width, format.height));
     const FilmRanges ranges = findRanges(document, options.threads, [&](long done, long of) {
       throwIfInterrupted();
       progress.showPreparing(done, of);
@@ -125,11 +126,11 @@ int runRender(const RenderOptions& options) {
       throwIfInterrupted();
       if (std::any_of(wanted.begin(), wanted.end(),
                       [&](const FrameRange& frames) { return frames.has(frame); })) {
-        std::unique_ptr<Snapshot> snapshot = pipeline.next();
-        world.capture(*snapshot);
-        snapshot->frame = frame;
-        ranges.put(*snapshot);
-        pipeline.submit(std::move(snapshot));
+        std::unique_ptr<FilmFrame> next = pipeline.next();
+        next->number = frame;
+        world.capture(next->panels[0]);
+        ranges.put(next->panels[0]);
+        pipeline.submit(std::move(next));
         ++drawn;
       }
       progress.show(frame + 1);

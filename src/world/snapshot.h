@@ -36,7 +36,6 @@ struct ProbePicture {
 struct Snapshot {
   double time = 0;
   long step = 0;
-  long frame = 0;
   Grid grid;
   bool periodicX = false, periodicY = false;
   std::vector<SmokePicture> smoke;

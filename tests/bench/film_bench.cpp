@@ -81,13 +81,13 @@ class Film {
       std::vector<FilmOutput> outputs;
       outputs.push_back(
           {openSink(file.string(), {output.width, output.height, output.fps, {}}), {0, kFrames - 1}});
-      FilmPipeline pipeline(output.width, output.height, std::move(outputs));
+      FilmPipeline pipeline(1, std::move(outputs), paintOnePanel(output.width, output.height));
       for (int k = 0; k < kFrames; ++k) {
-        std::unique_ptr<Snapshot> snapshot = pipeline.next();
-        fill(k, *snapshot);
-        snapshot->frame = k;
-        ranges_.put(*snapshot);
-        pipeline.submit(std::move(snapshot));
+        std::unique_ptr<FilmFrame> frame = pipeline.next();
+        frame->number = k;
+        fill(k, frame->panels[0]);
+        ranges_.put(frame->panels[0]);
+        pipeline.submit(std::move(frame));
       }
       pipeline.finish();
     });
