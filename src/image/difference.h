@@ -38,6 +38,8 @@ struct ImageDifference {
   bool within(const DifferenceTolerance& tolerance) const;
   /// "0.12% of the pixels off by more than 2 levels (0.05% may be); ...", what breaks the tolerance first.
   std::string inWords(const DifferenceTolerance& tolerance) const;
+  /// Only what breaks the tolerance, in the same words; empty if nothing does.
+  std::string whatBreaks(const DifferenceTolerance& tolerance) const;
 };
 
 /// Both of one size (else an InvariantError). Alpha is not looked at.
