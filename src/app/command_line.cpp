@@ -65,6 +65,12 @@ void addRunOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--stats", options.stats, "Write the figures of the run as JSON")->type_name("FILE");
 }
 
+void addPictureOptions(CLI::App& command, PictureOptions& options) {
+  command.add_option("--gl", options.gl, "Way to OpenGL: osmesa or egl; default: osmesa if it is built in")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"osmesa", "egl"}));
+}
+
 }  // namespace
 
 std::string programVersion() { return SMOKEBOX_VERSION; }
@@ -82,6 +88,7 @@ Command parseCommandLine(int argc, const char* const* argv) {
   CLI::App* renderCommand =
       app.add_subcommand("render", "Simulate a scene and draw it as a film, frames or a still");
   addRunOptions(*renderCommand, render);
+  addPictureOptions(*renderCommand, render);
   renderCommand
       ->add_option("-o,--output", render.outputs,
                    "Where to: .mp4 (H.264), .mkv (FFV1, lossless), folder/%05d.png (frames), .png (a still), "

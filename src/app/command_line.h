@@ -16,7 +16,12 @@ struct RunOptions {
   std::string stats;  // file for the figures; empty: none
 };
 
-struct RenderOptions : RunOptions {
+/// What every command that draws takes.
+struct PictureOptions {
+  std::string gl;  // "osmesa" or "egl"; empty: what the build has
+};
+
+struct RenderOptions : RunOptions, PictureOptions {
   std::vector<std::string> outputs;             // empty: renders/<scene>.mp4
   std::optional<double> at;                     // s
   std::optional<std::pair<long, long>> frames;  // first and last, both drawn

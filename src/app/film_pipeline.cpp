@@ -15,9 +15,9 @@ constexpr int kFrames = 3, kPictures = 3;
 
 }  // namespace
 
-std::function<PaintFrame()> paintOnePanel(int width, int height) {
+std::function<PaintFrame()> paintOnePanel(int width, int height, GlBackend backend) {
   return [=]() -> PaintFrame {
-    const auto renderer = std::make_shared<Renderer>(width, height);
+    const auto renderer = std::make_shared<Renderer>(width, height, backend);
     return [renderer](const FilmFrame& frame, Image& image) { renderer->draw(frame.panels[0], image); };
   };
 }

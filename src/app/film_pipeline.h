@@ -13,6 +13,7 @@
 #include "app/channel.h"
 #include "app/film_frames.h"
 #include "image/image.h"
+#include "render/gl_backend.h"
 #include "video/sink.h"
 #include "world/snapshot.h"
 
@@ -33,7 +34,7 @@ struct FilmFrame {
 /// Draws a frame. Made and used by the drawing thread alone.
 using PaintFrame = std::function<void(const FilmFrame& frame, Image& image)>;
 /// The first panel is the whole picture.
-std::function<PaintFrame()> paintOnePanel(int width, int height);
+std::function<PaintFrame()> paintOnePanel(int width, int height, GlBackend backend);
 
 class FilmPipeline {
  public:

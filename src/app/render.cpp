@@ -1,7 +1,6 @@
 // `smokebox render SCENE`: the film.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "app/scene_file.h"
 #include "app/stats_file.h"
 #include "base/errors.h"
+#include "render/gl_backend.h"
 #include "world/ranges.h"
 #include "world/world.h"
 
@@ -72,16 +72,12 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-/// The drawing thread rasterises by itself: there is too little to draw for it to be worth waking llvmpipe's
-/// threads, which would take the cores from the simulation. To be called before there are other threads; what
-/// the user has set stays.
-void preferDrawingAlone() { ::setenv("LP_NUM_THREADS", "0", 0); }
-
 }  // namespace
 
 int runRender(const RenderOptions& options) {
   catchInterrupts();
   preferDrawingAlone();
+  const GlBackend backend = glBackendNamed(options.gl);
   for (const std::string& output : options.outputs) outputKind(output);  // throws if the ending is unknown
   const SceneDocument document = loadScene(options.scene, options.settings);
   const SceneSpec spec = document.spec();
@@ -110,7 +106,7 @@ int runRender(const RenderOptions& options) {
   Progress progress(last + 1, options.quiet);
   SummaryFigures summary;
   {
-    FilmPipeline pipeline(1, std::move(outputs), paintOnePanel(format.width, format.height));
+    FilmPipeline pipeline(1, std::move(outputs), paintOnePanel(format.width, format.height, backend));
     const FilmRanges ranges = findRanges(document, options.threads, [&](long done, long of) {
       throwIfInterrupted();
       progress.showPreparing(done, of);

@@ -1,19 +1,22 @@
-// The one door to OpenGL: an off-screen 3.3 core context without a display. Behind it stands OSMesa (Mesa's
-// llvmpipe, which draws on the CPU); another way in, such as EGL without a surface, would be a second
-// constructor of the same class.
+// The one door to OpenGL: an off-screen 3.3 core context without a display, drawn on the CPU by Mesa's
+// llvmpipe. Behind it stands OSMesa, or EGL without a surface: one file each (gl_osmesa.cpp, gl_egl.cpp),
+// built if its library is there. Any number of contexts may live at once, each in a thread of its own.
 #pragma once
 #include <memory>
 #include <string>
 
 #include "render/gl.h"
+#include "render/gl_backend.h"
 
 namespace smokebox {
+
+class GlDoor;
 
 class GlContext {
  public:
   /// Makes a context and takes it for the calling thread. Throws GlError: no context, a missing function, or
   /// the softpipe rasteriser, which is some 45 times slower.
-  GlContext();
+  explicit GlContext(GlBackend backend = defaultGlBackend());
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
@@ -25,8 +28,7 @@ class GlContext {
   const std::string& rendererName() const { return rendererName_; }
 
  private:
-  struct Handle;
-  std::unique_ptr<Handle> handle_;
+  std::unique_ptr<GlDoor> door_;
   Gl gl_;
   std::string rendererName_;
 };

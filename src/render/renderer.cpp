@@ -23,8 +23,9 @@ struct Renderer::Impl {
   TextLayer text;
   ProbesLayer probes;
 
-  Impl(int w, int h)
-      : width(w),
+  Impl(int w, int h, GlBackend backend)
+      : context(backend),
+        width(w),
         height(h),
         target(context.gl(), w, h),
         palette(context.gl(), w, h),
@@ -54,9 +55,9 @@ bool fillsPicture(const Snapshot& snapshot, const LayerSpec& layer) {
 }
 }  // namespace
 
-Renderer::Renderer(int width, int height) {
+Renderer::Renderer(int width, int height, GlBackend backend) {
   checkInvariant(width > 0 && height > 0, "a picture has a size");
-  impl_ = std::make_unique<Impl>(width, height);
+  impl_ = std::make_unique<Impl>(width, height, backend);
 }
 
 Renderer::~Renderer() {

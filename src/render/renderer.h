@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "image/image.h"
+#include "render/gl_backend.h"
 #include "world/snapshot.h"
 
 namespace smokebox {
@@ -10,7 +11,7 @@ namespace smokebox {
 class Renderer {
  public:
   /// Takes the OpenGL context for the calling thread; draw() must be called there. Throws GlError.
-  Renderer(int width, int height);
+  Renderer(int width, int height, GlBackend backend = defaultGlBackend());
   ~Renderer();
 
   /// `image` is resized as needed.

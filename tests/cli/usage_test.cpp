@@ -25,7 +25,7 @@ TEST(Usage, HelpOfACommandListsItsOptions) {
   const RunResult run = runProgram({"render", "--help"}, folder.path());
   EXPECT_EQ(run.status, 0);
   for (const char* option :
-       {"-o", "--at", "--frames", "--size", "--set", "--threads", "--stats", "-y", "--quiet"})
+       {"-o", "--at", "--frames", "--size", "--set", "--threads", "--stats", "--gl", "-y", "--quiet"})
     EXPECT_NE(run.out.find(option), std::string::npos) << option << "\n" << run.out;
 }
 
@@ -78,6 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUsage{{"render", "scene.yaml", "--at", "0.1", "-o", "a.mp4"}, "still"},
                     WrongUsage{{"render", "scene.yaml", "-o", "a.mp4", "-o", "a.mp4"}, "twice"},
                     WrongUsage{{"render", "scene.yaml", "--size", "65x33", "-o", "a.mp4"}, "even"},
+                    WrongUsage{{"render", "scene.yaml", "--gl", "glide", "-o", "a.mp4"}, "--gl"},
                     WrongUsage{{"render", "scene.yaml", "-o", "a.avi"}, "'.avi'"},
                     WrongUsage{{"render", "scene.yaml", "-o", "a"}, "no ending"},
                     WrongUsage{{"render", "scene.yaml", "-o", "/dev/full"}, "no ending"},

@@ -65,13 +65,21 @@ void addCircle(Snapshot& snapshot, Vec2 centre, double radius, const Color& colo
   snapshot.solids.push_back(std::move(solid));
 }
 
-Image drawn(const Snapshot& snapshot, int width, int height) {
-  Image image;
-  Renderer(width, height).draw(snapshot, image);
-  return image;
-}
+/// Each truth holds on each way to OpenGL that is built.
+class RenderPicture : public testing::TestWithParam<GlBackend> {
+ protected:
+  RenderPicture() { preferDrawingAlone(); }  // as the program does
 
-TEST(RenderPicture, EmptySceneIsTheGroundExactly) {
+  static Image drawn(const Snapshot& snapshot, int width, int height) {
+    Image image;
+    Renderer(width, height, GetParam()).draw(snapshot, image);
+    return image;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Gl, RenderPicture, testing::ValuesIn(builtGlBackends()),
+                         [](const auto& instance) { return std::string(nameOf(instance.param)); });
+
+TEST_P(RenderPicture, EmptySceneIsTheGroundExactly) {
   // Every pixel has the scene's background, dark or light, and full alpha.
   for (const Color ground :
        {Color{0.055f, 0.063f, 0.078f}, Color{0.96f, 0.96f, 0.95f}, Color{0.2f, 0.4f, 0.6f}}) {
@@ -85,7 +93,7 @@ TEST(RenderPicture, EmptySceneIsTheGroundExactly) {
   }
 }
 
-TEST(RenderPicture, SolidHasItsTrueAreaAndAspect) {
+TEST_P(RenderPicture, SolidHasItsTrueAreaAndAspect) {
   // A circle covers its area within 0.5%, and is as wide as high within a pixel, whatever the picture's
   // shape.
   for (const auto& [w, h] : {std::pair{640, 360}, {501, 433}}) {
@@ -116,7 +124,7 @@ TEST(RenderPicture, SolidHasItsTrueAreaAndAspect) {
   }
 }
 
-TEST(RenderPicture, SymmetricSceneIsSymmetric) {
+TEST_P(RenderPicture, SymmetricSceneIsSymmetric) {
   // Mirrored smoke and solids give a mirrored picture, within one step of a colour.
   Snapshot snapshot = scene(64, 36, 4, {LayerKind::smoke, LayerKind::solids});
   Field value(64, 36);
@@ -136,7 +144,7 @@ TEST(RenderPicture, SymmetricSceneIsSymmetric) {
     }
 }
 
-TEST(RenderPicture, NoHaloAlongSolids) {
+TEST_P(RenderPicture, NoHaloAlongSolids) {
   // Uniform smoke has one colour up to the edge of a solid, though the cells inside hold none.
   for (const int colors : {1, 2}) {
     Snapshot snapshot = scene(64, 36, 4, {LayerKind::smoke, LayerKind::solids});
@@ -161,7 +169,7 @@ TEST(RenderPicture, NoHaloAlongSolids) {
   }
 }
 
-TEST(RenderPicture, SmokeIsNeverBlocky) {
+TEST_P(RenderPicture, SmokeIsNeverBlocky) {
   // Cells of 20 pixels: between neighbouring pixels no colour jumps, and the way from full to empty takes
   // cells.
   Snapshot snapshot = scene(64, 36, 4, {LayerKind::smoke});
@@ -175,7 +183,7 @@ TEST(RenderPicture, SmokeIsNeverBlocky) {
   EXPECT_GT(at(image, 640, 360).g, at(image, 670, 360).g + 10);
 }
 
-TEST(RenderPicture, GroundShowsUnchangedBesideSmoke) {
+TEST_P(RenderPicture, GroundShowsUnchangedBesideSmoke) {
   // Where smoke ends, the ground keeps its exact colour, whether smoke is drawn first or over something else.
   for (const bool first : {true, false}) {
     Snapshot snapshot = scene(64, 36, 4, {LayerKind::smoke});
@@ -191,7 +199,7 @@ TEST(RenderPicture, GroundShowsUnchangedBesideSmoke) {
   }
 }
 
-TEST(RenderPicture, SmokeFollowsBeerAndLambert) {
+TEST_P(RenderPicture, SmokeFollowsBeerAndLambert) {
   // Twice the smoke lets through the square of what once lets through.
   auto shareAt = [](float density) {
     Snapshot snapshot = scene(16, 9, 4, {LayerKind::smoke});
@@ -203,7 +211,7 @@ TEST(RenderPicture, SmokeFollowsBeerAndLambert) {
   EXPECT_NEAR(shareAt(0.5f), std::exp(-0.9), 0.01);
 }
 
-TEST(RenderPicture, NoPressureIsTheNeutralColor) {
+TEST_P(RenderPicture, NoPressureIsTheNeutralColor) {
   // Zero has the map's middle colour, with an asymmetric range too; the ends of the range have the ends'
   // colours.
   for (const std::array<double, 2> range : {std::array<double, 2>{-1, 1}, {-1, 5}}) {
@@ -217,7 +225,7 @@ TEST(RenderPicture, NoPressureIsTheNeutralColor) {
   }
 }
 
-TEST(RenderPicture, VorticityLiesOnNodes) {
+TEST_P(RenderPicture, VorticityLiesOnNodes) {
   // A field that is odd about the domain's middle changes its sign there, to the pixel.
   Snapshot snapshot = scene(16, 9, 4, {LayerKind::vorticity});
   snapshot.vorticity = Field(17, 10);
@@ -231,7 +239,7 @@ TEST(RenderPicture, VorticityLiesOnNodes) {
   EXPECT_GT(at(image, 40, 90).g, at(image, 40, 90).r);    // green
 }
 
-TEST(RenderPicture, NothingOfTheFluidIsPaintedOverASolid) {
+TEST_P(RenderPicture, NothingOfTheFluidIsPaintedOverASolid) {
   // Also if the list of layers has the solids first.
   Snapshot snapshot = scene(16, 9, 4, {LayerKind::solids, LayerKind::pressure});
   snapshot.pressure = Field(16, 9, 1);
@@ -239,7 +247,7 @@ TEST(RenderPicture, NothingOfTheFluidIsPaintedOverASolid) {
   EXPECT_LE(difference(at(drawn(snapshot, 320, 180), 160, 90), rgb({0.2f, 0.8f, 0.4f})), 1);
 }
 
-TEST(RenderPicture, LetterboxKeepsTheAspect) {
+TEST_P(RenderPicture, LetterboxKeepsTheAspect) {
   // A square domain in a wide picture stands in the middle, with another ground and a frame beside it.
   Snapshot snapshot = scene(16, 16, 4, {});
   const Image image = drawn(snapshot, 400, 200);
@@ -252,7 +260,7 @@ TEST(RenderPicture, LetterboxKeepsTheAspect) {
   EXPECT_LT(at(image, 97, 100).g, ground.g);
 }
 
-TEST(RenderPicture, CameraFramesAndFollows) {
+TEST_P(RenderPicture, CameraFramesAndFollows) {
   // A height of 1 m shows the followed solid in the middle, at a scale of the picture's height to a metre.
   Snapshot snapshot = scene(64, 36, 4, {LayerKind::solids});
   addCircle(snapshot, {2.7, 1.4}, 0.25, {1, 1, 1});
@@ -267,7 +275,7 @@ TEST(RenderPicture, CameraFramesAndFollows) {
   EXPECT_LT(at(drawn(snapshot, 200, 200), 110, 100).g, 60);
 }
 
-TEST(RenderPicture, TextIsThereAndNowhereElse) {
+TEST_P(RenderPicture, TextIsThereAndNowhereElse) {
   // The time stamp fills the upper left, the caption the lower middle; without their layers nothing is drawn.
   auto differing = [](const Image& image, const Rgb& ground, int x0, int y0, int x1, int y1) {
     int count = 0;
@@ -288,7 +296,7 @@ TEST(RenderPicture, TextIsThereAndNowhereElse) {
   EXPECT_EQ(differing(drawn(snapshot, 1280, 720), ground, 0, 0, 1280, 720), 0);
 }
 
-TEST(RenderPicture, ArrowsStayOutOfSolids) {
+TEST_P(RenderPicture, ArrowsStayOutOfSolids) {
   // In a uniform wind arrows are everywhere but inside the solid, and the same picture results twice.
   Snapshot snapshot = scene(64, 36, 4, {LayerKind::velocity});
   snapshot.velocityX = Field(64, 36, 1);
@@ -309,7 +317,7 @@ TEST(RenderPicture, ArrowsStayOutOfSolids) {
   EXPECT_GT(outside, 10000);
 }
 
-TEST(RenderPicture, EveryLayerAtEverySize) {
+TEST_P(RenderPicture, EveryLayerAtEverySize) {
   // Small, odd, tall and large pictures work with every layer at once, and a second draw gives the same
   // bytes.
   Snapshot snapshot =
@@ -327,7 +335,7 @@ TEST(RenderPicture, EveryLayerAtEverySize) {
   snapshot.captions = {"one",
                        "another one that is long enough to be wrapped in any picture that is not very wide"};
   for (const auto& [w, h] : {std::pair{64, 36}, {1, 1}, {333, 77}, {90, 400}, {1281, 719}}) {
-    Renderer renderer(w, h);
+    Renderer renderer(w, h, GetParam());
     Image first, second;
     renderer.draw(snapshot, first);
     renderer.draw(snapshot, second);
@@ -340,11 +348,11 @@ TEST(RenderPicture, EveryLayerAtEverySize) {
   }
 }
 
-TEST(RenderPicture, TwoRenderersDoNotDisturbEachOther) {
+TEST_P(RenderPicture, TwoRenderersDoNotDisturbEachOther) {
   // Their contexts are taken in turn on one thread.
   Snapshot snapshot = scene(16, 9, 4, {LayerKind::solids});
   addCircle(snapshot, {2, 1.125}, 0.5, {0.9f, 0.2f, 0.2f});
-  Renderer a(160, 90), b(320, 180);
+  Renderer a(160, 90, GetParam()), b(320, 180, GetParam());
   Image one, other, again;
   a.draw(snapshot, one);
   b.draw(snapshot, other);
@@ -353,10 +361,10 @@ TEST(RenderPicture, TwoRenderersDoNotDisturbEachOther) {
   EXPECT_EQ(other.width, 320);
 }
 
-TEST(RenderPicture, KnownCrashIsRefused) {
+TEST_P(RenderPicture, KnownCrashIsRefused) {
   // llvmpipe dies with vectors of 512 bits: that is an error with a message, not a crash.
   setenv("LP_NATIVE_VECTOR_WIDTH", "512", 1);
-  EXPECT_THROW(Renderer(16, 16), GlError);
+  EXPECT_THROW(Renderer(16, 16, GetParam()), GlError);
   unsetenv("LP_NATIVE_VECTOR_WIDTH");
 }
 
