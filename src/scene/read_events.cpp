@@ -1,6 +1,7 @@
 // events
 #include <algorithm>
 
+#include "scene/nearest.h"
 #include "scene/read_shape.h"
 #include "scene/sections.h"
 
@@ -96,26 +97,51 @@ void readForce(EventReader& event, const YamlNode& node) {
   event.add(std::move(force));
 }
 
-/// One name or a list of them.
-template <class Make>
-void readNames(EventReader& event, const YamlNode& node, const std::string& key, Make make) {
+/// One name or a list of them; each goes to `take`.
+template <class Take>
+void readNames(EventReader& event, const YamlNode& node, const std::string& key, Take take) {
   auto one = [&](const YamlNode& item, const std::string& called) {
-    if (const auto solid = event.reader().text(item, called))
-      if (checkSolidName(event.reader(), item, event.spec, *solid)) event.add(make(*solid));
+    if (const auto name = event.reader().text(item, called)) take(item, *name);
   };
   if (node.kind != YamlNode::Kind::list) return one(node, event.name(key));
   for (std::size_t k = 0; k < node.items.size(); ++k)
     one(*node.items[k], inside(event.name(key), std::to_string(k)));
 }
 
-void readShow(EventReader& event, const YamlNode& node) {
-  readNames(event, node, "show", [](const std::string& solid) { return VisibilityAction{solid, true}; });
+/// A solid or a layer of the view. Showing a layer is setting its `shown`, so that the later event of any
+/// kind wins.
+void readVisibility(EventReader& event, const YamlNode& node, const std::string& key, bool visible) {
+  Reader& reader = event.reader();
+  const std::vector<std::string>& layers = event.spec.view.layerNames;
+  readNames(event, node, key, [&](const YamlNode& item, const std::string& name) {
+    std::vector<std::string> known;
+    for (const SolidSpec& solid : event.spec.solids) known.push_back(solid.name);
+    const bool isSolid = std::find(known.begin(), known.end(), name) != known.end();
+    const bool isLayer = std::find(layers.begin(), layers.end(), name) != layers.end();
+    if (isSolid && isLayer)
+      reader.warning(item.mark, "`" + name + "` is a solid and a layer: the solid is meant",
+                     "rename the solid, or set: {view.layers." + name + ".shown: ...}");
+    if (isSolid) {
+      event.add(VisibilityAction{name, visible});
+    } else if (isLayer) {
+      event.add(SetAction{"view.layers." + name + ".shown", visible ? "true" : "false", item.mark.place()});
+    } else if (isLayerName(name)) {
+      reader.error(item.mark, "the view has no layer `" + name + "`",
+                   "list it in view.layers: {" + name + ": {shown: false}}");
+    } else {
+      for (const std::string& layer : layers)
+        if (std::find(known.begin(), known.end(), layer) == known.end()) known.push_back(layer);
+      reader.error(item.mark, "no solid and no layer is named `" + name + "`", suggestion(name, known));
+    }
+  });
 }
-void readHide(EventReader& event, const YamlNode& node) {
-  readNames(event, node, "hide", [](const std::string& solid) { return VisibilityAction{solid, false}; });
-}
+
+void readShow(EventReader& event, const YamlNode& node) { readVisibility(event, node, "show", true); }
+void readHide(EventReader& event, const YamlNode& node) { readVisibility(event, node, "hide", false); }
 void readStop(EventReader& event, const YamlNode& node) {
-  readNames(event, node, "stop", [](const std::string& solid) { return StopAction{solid}; });
+  readNames(event, node, "stop", [&](const YamlNode& item, const std::string& solid) {
+    if (checkSolidName(event.reader(), item, event.spec, solid)) event.add(StopAction{solid});
+  });
 }
 
 void readCaption(EventReader& event, const YamlNode& node) {

@@ -28,11 +28,11 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   readSmoke(scene, spec);
   readSolids(scene, spec);
   readProbes(scene, spec);
+  readView(scene, spec);  // before the events, which show its layers
   if (events)
     readEvents(scene, spec);
   else
     scene.find("events");  // of a trial: they were read before, and nothing can set them
-  readView(scene, spec);
   readMethod(scene, spec);
   for (const char* key : kNotYet) scene.unsupported(key);
   scene.finish();

@@ -3,12 +3,14 @@
 
 #include "scene/nearest.h"
 #include "scene/sections.h"
+#include "scene/tree_path.h"
 
 namespace smokebox {
 namespace {
 
 // What may stand beside each layer's name; `kind` is empty for what a scene of this version never has: such a
 // layer is taken, and draws nothing.
+// `shown` may stand beside any.
 enum Option : unsigned { opacity = 1, range = 2, bar = 4, spacing = 8, scale = 16, color = 32 };
 constexpr unsigned kAll = opacity | range | bar | spacing | scale | color;
 
@@ -49,6 +51,7 @@ const LayerEntry* layerNamed(Reader& reader, const YamlMark& mark, const std::st
 void readOptions(Reader& reader, const YamlNode& node, const std::string& name, unsigned allowed,
                  LayerSpec& layer) {
   MapReader map(reader, node, name);
+  map.boolean("shown", layer.shown);
   if (allowed & Option::opacity) map.number("opacity", layer.opacity, kShare);
   if (allowed & Option::range) {
     if (const YamlNode* found = map.find("range"); found && reader.isList(*found, inside(name, "range"), 2)) {
@@ -85,6 +88,7 @@ void readLayer(Reader& reader, const YamlNode& node, const std::string& name, Vi
         "{pressure: {opacity: 0.6}}");
   }
   if (!entry) return;
+  view.layerNames.emplace_back(entry->key);
   LayerSpec layer;
   if (options) readOptions(reader, *options, inside(name, entry->key), entry->options, layer);
   if (!entry->kind) return;
@@ -119,14 +123,27 @@ void readCamera(Reader& reader, const YamlNode& node, const SceneSpec& spec, Cam
 
 }  // namespace
 
+const char* layerName(LayerKind kind) {
+  for (const LayerEntry& entry : kLayers)
+    if (entry.kind == kind) return entry.key;
+  checkInvariant(false, "every kind of layer has a name");
+  return "";
+}
+
+bool isLayerName(const std::string& name) {
+  return std::any_of(std::begin(kLayers), std::end(kLayers),
+                     [&](const LayerEntry& entry) { return name == entry.key; });
+}
+
 void readView(MapReader& scene, SceneSpec& spec) {
   Reader& reader = scene.reader();
   ViewSpec& view = spec.view;
   auto defaultLayers = [&] {
-    for (const LayerKind kind : {LayerKind::smoke, LayerKind::solids, LayerKind::caption}) {
+    for (const char* name : kDefaultLayers) {
       LayerSpec layer;
-      layer.kind = kind;
+      layer.kind = *layerNamed(reader, scene.mark(), name)->kind;
       view.layers.push_back(layer);
+      view.layerNames.emplace_back(name);
     }
   };
   const YamlNode* node = scene.find("view");

@@ -35,6 +35,9 @@ void checkFormulas(MapReader& scene, const SceneSpec& spec);
 /// Warns of things that lie outside of the domain.
 void checkPlacement(MapReader& scene, const SceneSpec& spec);
 
+/// Is it the name of a layer, whether this scene lists it or not?
+bool isLayerName(const std::string& name);
+
 /// Reports a name that no solid has.
 bool checkSolidName(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name);
 

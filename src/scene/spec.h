@@ -124,8 +124,12 @@ struct EventSpec {
 // -------------------------------------------------------------------------------------------------------
 enum class LayerKind { smoke, solids, pressure, vorticity, speed, velocity, caption, time, probes };
 
+/// As a scene calls it.
+const char* layerName(LayerKind kind);
+
 struct LayerSpec {
   LayerKind kind = LayerKind::smoke;
+  bool shown = true;  // false: not until an event shows it
   double opacity = 1;
   std::optional<std::array<double, 2>> range;  // of a field; without it one range for the whole film is found
   bool bar = true;                             // colour bar of a field
@@ -147,6 +151,7 @@ struct CameraSpec {
 
 struct ViewSpec {
   std::vector<LayerSpec> layers;
+  std::vector<std::string> layerNames;  // of all that are listed, those too that draw nothing in this version
   std::vector<CaptionSpec> captions;
   Color background{0.055f, 0.063f, 0.078f};
   CameraSpec camera;

@@ -20,6 +20,17 @@ std::vector<std::string> pathSteps(const std::string& path) {
 
 namespace {
 
+std::string itemName(const YamlNode& item) {
+  const YamlEntry* name = item.entry("name");
+  return name ? name->value->text : std::string();
+}
+
+/// Of an entry of `view.layers`; empty if it is none.
+std::string layerName(const YamlNode& item) {
+  if (item.kind == YamlNode::Kind::scalar) return item.text;
+  return item.kind == YamlNode::Kind::map && item.entries.size() == 1 ? item.entries[0].key : std::string();
+}
+
 struct Walk {
   const std::vector<std::string>& steps;
   const std::string& path;
@@ -37,14 +48,17 @@ struct Walk {
     return text;
   }
 
+  /// Is the list that is reached after so many steps the one of layers?
+  bool isLayers(std::size_t depth) const { return depth == 2 && steps[0] == "view" && steps[1] == "layers"; }
+
   std::size_t itemIndex(const YamlNode& list, std::size_t depth) const {
     const std::string& step = steps[depth];
     std::vector<std::string> names;
     for (std::size_t k = 0; k < list.items.size(); ++k) {
-      const YamlEntry* name = list.items[k]->entry("name");
-      if (!name) continue;
-      if (name->value->text == step) return k;
-      names.push_back(name->value->text);
+      const std::string name = isLayers(depth) ? layerName(*list.items[k]) : itemName(*list.items[k]);
+      if (name.empty()) continue;
+      if (name == step) return k;
+      names.push_back(name);
     }
     std::size_t index = 0;
     const auto [end, fault] = std::from_chars(step.data(), step.data() + step.size(), index);
@@ -57,23 +71,70 @@ struct Walk {
          names.empty() ? "a position counted from 0" : suggestion(step, names));
   }
 
+  YamlNode newMap() const {
+    YamlNode map;
+    map.kind = YamlNode::Kind::map;
+    map.mark = mark;
+    return map;
+  }
+
+  YamlNode defaultLayers() const {
+    YamlNode list;
+    list.kind = YamlNode::Kind::list;
+    list.mark = mark;
+    for (const char* name : kDefaultLayers) {
+      YamlNode item;
+      item.kind = YamlNode::Kind::scalar;
+      item.mark = mark;
+      item.text = name;
+      list.items.push_back(std::make_shared<const YamlNode>(std::move(item)));
+    }
+    recount(list);
+    return list;
+  }
+
+  /// A layer, as a map of its name and its options, with the value put into the options.
+  YamlPtr replacedLayer(const YamlPtr& layer, std::size_t depth) const {
+    YamlNode copy = *layer;
+    if (copy.kind == YamlNode::Kind::scalar) {
+      copy = newMap();
+      copy.mark = layer->mark;
+      copy.entries.push_back({layer->text, layer->mark, nullptr});
+    }
+    copy.entries[0].value = replaced(copy.entries[0].value, depth);
+    recount(copy);
+    return std::make_shared<const YamlNode>(std::move(copy));
+  }
+
   YamlPtr replaced(const YamlPtr& old, std::size_t depth) const {
     if (depth == steps.size()) return value;
     const std::string& step = steps[depth];
     YamlNode copy;
-    if (!old || old->kind == YamlNode::Kind::null) {
+    if (isLayers(depth) && (!old || old->kind == YamlNode::Kind::null)) {
+      copy = defaultLayers();
+    } else if (!old || old->kind == YamlNode::Kind::null) {
       if (std::all_of(step.begin(), step.end(), [](char c) { return c >= '0' && c <= '9'; }))
         fail("`" + path + "`: the scene has no list `" + before(depth) + "`", "give the whole list");
-      copy.kind = YamlNode::Kind::map;
-      copy.mark = mark;
+      copy = newMap();
     } else {
       copy = *old;
     }
     if (copy.kind == YamlNode::Kind::scalar)
       fail("`" + path + "`: `" + before(depth) + "` is a single value and has no `" + step + "`", "");
     if (copy.kind == YamlNode::Kind::list) {
-      YamlPtr& item = copy.items[itemIndex(copy, depth)];
-      item = replaced(item, depth + 1);
+      YamlPtr& first = copy.items[itemIndex(copy, depth)];
+      if (isLayers(depth) && layerName(*first) == step) {
+        for (YamlPtr& item : copy.items)
+          if (layerName(*item) == step) item = replacedLayer(item, depth + 1);
+      } else if (isLayers(depth) && depth + 1 < steps.size() && layerName(*first) == steps[depth + 1]) {
+        first = replacedLayer(first, depth + 2);
+      } else if (isLayers(depth) && depth + 1 < steps.size() && !layerName(*first).empty()) {
+        fail("`" + path + "`: `" + before(depth + 1) + "` is `" + layerName(*first) + "`, not `" +
+                 steps[depth + 1] + "`",
+             "view.layers." + layerName(*first) + "." + steps.back());
+      } else {
+        first = replaced(first, depth + 1);
+      }
     } else {
       const auto found = std::find_if(copy.entries.begin(), copy.entries.end(),
                                       [&](const YamlEntry& entry) { return entry.key == step; });

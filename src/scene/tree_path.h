@@ -1,5 +1,6 @@
 // Paths into a scene's tree, such as `solids.fan.drag`: keys of maps, positions in lists, or names of what a
-// list holds.
+// list holds. In `view.layers` the name of a layer leads to every entry of that name, `pressure` as well as
+// `{pressure: {opacity: 0.6}}`; a bare name becomes a map when an option is set below it.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "scene/yaml_tree.h"
 
 namespace smokebox {
+
+/// The layers of a scene that lists none.
+inline constexpr const char* kDefaultLayers[] = {"smoke", "solids", "caption"};
 
 std::vector<std::string> pathSteps(const std::string& path);
 

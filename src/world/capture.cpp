@@ -47,11 +47,6 @@ void extendIntoSolids(const Grid& grid, Field& value, std::vector<unsigned char>
   }
 }
 
-bool shows(const ViewSpec& view, LayerKind kind) {
-  return std::any_of(view.layers.begin(), view.layers.end(),
-                     [&](const LayerSpec& layer) { return layer.kind == kind; });
-}
-
 void ensure(Field& field, const Grid& grid) {
   if (field.nx() != grid.nx || field.ny() != grid.ny) field = Field(grid.nx, grid.ny);
 }
@@ -60,16 +55,16 @@ void ensure(Field& field, const Grid& grid) {
 
 void World::capture(Snapshot& snapshot) const {
   const Grid& grid = boundary_.grid;
-  const ViewSpec& view = spec_.view;
   snapshot.time = time();
   snapshot.step = stepCount_;
   snapshot.grid = grid;
-  snapshot.view = view;
+  snapshot.view = spec_.view;
+  std::erase_if(snapshot.view.layers, [](const LayerSpec& layer) { return !layer.shown; });
   snapshot.periodicX = boundary_.periodicX();
   snapshot.periodicY = boundary_.periodicY();
 
   if (fluid_) snapshot.open = boundary_.volume;
-  if (smoke_ && shows(view, LayerKind::smoke)) {
+  if (smoke_ && snapshot.shows(LayerKind::smoke)) {
     snapshot.smoke.resize(smoke_->colors().size());
     for (std::size_t c = 0; c < snapshot.smoke.size(); ++c) {
       snapshot.smoke[c].color = smoke_->colors()[c];
@@ -79,7 +74,7 @@ void World::capture(Snapshot& snapshot) const {
     snapshot.smoke.clear();
   }
 
-  auto wants = [&](LayerKind kind) { return fluid_ && (options_.allFields || shows(view, kind)); };
+  auto wants = [&](LayerKind kind) { return fluid_ && snapshot.shows(kind); };
   if (wants(LayerKind::pressure)) capturePressure(snapshot.pressure);
   if (wants(LayerKind::vorticity) || wants(LayerKind::speed) || wants(LayerKind::velocity))
     captureVelocity(wants(LayerKind::vorticity), snapshot);
@@ -102,7 +97,7 @@ void World::capture(Snapshot& snapshot) const {
   probes_.capture(solids_, snapshot.probes);
 
   snapshot.captions.clear();
-  for (const CaptionSpec& caption : view.captions)
+  for (const CaptionSpec& caption : spec_.view.captions)
     if (time() >= caption.from && time() < caption.until) snapshot.captions.push_back(caption.text);
   for (const ActiveCaption& caption : captions_) snapshot.captions.push_back(caption.text);
 }

@@ -1,6 +1,9 @@
 #include "world/needs.h"
 
 #include <algorithm>
+#include <cctype>
+
+#include "scene/tree_path.h"
 
 namespace smokebox {
 
@@ -17,6 +20,24 @@ bool anyEvent(const SceneSpec& spec) {
                      [](const EventSpec& event) { return std::holds_alternative<Action>(event.action); });
 }
 
+/// Does a setting at `path` change `option` of the layers that are named so? Paths lead there by the name or
+/// by a position in the list.
+bool reachesLayer(const std::string& path, const std::string& name, const std::string& option) {
+  const std::vector<std::string> steps = pathSteps(path);
+  if (steps[0] != "view") return false;
+  if (steps.size() > 1 && steps[1] != "layers") return false;
+  if (steps.size() < 3) return true;
+  std::size_t next = 3;
+  if (steps[2] != name) {  // is it a position?
+    if (steps.size() == 3) return std::isdigit(static_cast<unsigned char>(steps[2][0]));
+    if (steps[3] != name) return false;
+    next = 4;
+  }
+  return next >= steps.size() || steps[next] == option;
+}
+
+bool isOff(const std::string& value) { return value == "false" || value == "no" || value == "off"; }
+
 }  // namespace
 
 bool concerns(const std::string& path, const std::string& key) {
@@ -30,6 +51,19 @@ bool eventSets(const SceneSpec& spec, const std::string& path) {
   });
 }
 
+bool eventSetsLayer(const SceneSpec& spec, LayerKind kind, const std::string& option) {
+  return std::any_of(spec.events.begin(), spec.events.end(), [&](const EventSpec& event) {
+    const auto* set = std::get_if<SetAction>(&event.action);
+    return set && reachesLayer(set->path, layerName(kind), option) && !isOff(set->value);
+  });
+}
+
+bool canShow(const SceneSpec& spec, LayerKind kind) {
+  return eventSetsLayer(spec, kind, "shown") ||
+         std::any_of(spec.view.layers.begin(), spec.view.layers.end(),
+                     [&](const LayerSpec& layer) { return layer.kind == kind && layer.shown; });
+}
+
 Needs needsOf(const SceneSpec& spec) {
   Needs needs;
   needs.movingSolids = std::any_of(spec.solids.begin(), spec.solids.end(),
@@ -41,10 +75,10 @@ Needs needsOf(const SceneSpec& spec) {
 
   needs.smoke = !spec.smokeColors().empty();
   needs.buoyancy = needs.smoke && (spec.smoke.buoyancy != 0 || eventSets(spec, "smoke.buoyancy"));
-  needs.sourcesDrive = needs.smoke &&
-                       (eventSets(spec, "smoke.sources") ||
-                        std::any_of(spec.smoke.sources.begin(), spec.smoke.sources.end(),
-                                    [](const SourceSpec& source) { return source.velocity.has_value(); }));
+  needs.sourcesDrive =
+      needs.smoke && (eventSets(spec, "smoke.sources") ||
+                      std::any_of(spec.smoke.sources.begin(), spec.smoke.sources.end(),
+                                  [](const SourceSpec& source) { return source.velocity.has_value(); }));
   needs.parts.viscous = spec.fluid.viscosity > 0 || eventSets(spec, "fluid.viscosity");
   needs.parts.confined = spec.fluid.vorticity != 0 || eventSets(spec, "fluid.vorticity");
   needs.parts.forced =

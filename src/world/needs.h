@@ -21,6 +21,12 @@ struct Needs {
 
 Needs needsOf(const SceneSpec& spec);
 
+/// Does an event set this option of the layers of that kind, or the whole of such a layer?
+bool eventSetsLayer(const SceneSpec& spec, LayerKind kind, const std::string& option);
+
+/// Is a layer of this kind shown at the start, or does an event show it?
+bool canShow(const SceneSpec& spec, LayerKind kind);
+
 /// Does a setting at `path` change this key, or one above or below it?
 bool concerns(const std::string& path, const std::string& key);
 

@@ -4,6 +4,35 @@
 
 namespace smokebox {
 
+namespace {
+
+/// Which fields the pictures show, and when.
+PlanLine fieldsInPictures(const SceneSpec& spec) {
+  PlanLine line{"fields in pictures", false, ""};
+  std::string hidden;
+  for (const LayerKind kind :
+       {LayerKind::pressure, LayerKind::vorticity, LayerKind::speed, LayerKind::velocity}) {
+    bool listed = false, atStart = false;
+    for (const LayerSpec& layer : spec.view.layers) {
+      listed |= layer.kind == kind;
+      atStart |= layer.kind == kind && layer.shown;
+    }
+    auto add = [&](std::string& text, const char* how) {
+      text += (text.empty() ? "" : ", ") + std::string(layerName(kind)) + how;
+    };
+    if (spec.hasFluid && canShow(spec, kind)) {
+      line.modelled = true;
+      add(line.why, atStart ? "" : listed ? " (when an event shows it)" : " (if an event adds it)");
+    } else if (listed) {
+      add(hidden, spec.hasFluid ? " is hidden, and no event shows it" : " needs a fluid");
+    }
+  }
+  if (!line.modelled) line.why = hidden.empty() ? "no layer shows one" : hidden;
+  return line;
+}
+
+}  // namespace
+
 Plan planOf(const SceneSpec& spec) {
   const Needs needs = needsOf(spec);
   Plan plan;
@@ -32,6 +61,7 @@ Plan planOf(const SceneSpec& spec) {
        needs.movingSolids ? "anew when one moves" : "once: none moves", "no solids in a fluid");
   line("forces on solids", needs.reports, "report: true", "no solid reports");
   line("probes", !spec.probes.empty(), "probes", "no probes");
+  plan.lines.push_back(fieldsInPictures(spec));
   line("events", !spec.events.empty(), "events", "no events");
 
   // Fields of floats: velocity, pressure, fractions and wall velocities; stages of the integrator; the

@@ -46,11 +46,6 @@ double quantile(std::vector<float>& values, double share) {
   return values[k];
 }
 
-struct Wanted {
-  bool pressure = false, vorticity = false, speed = false;
-  bool any() const { return pressure || vorticity || speed; }
-};
-
 // What one frame reaches: all but a thousandth of the open cells stay below it.
 double reach(const Snapshot& snapshot, const Field& field, std::vector<float>& scratch) {
   scratch.clear();
@@ -71,7 +66,7 @@ double speedReach(const Snapshot& snapshot, std::vector<float>& scratch) {
   return quantile(scratch, 0.999);
 }
 
-// What each frame of the film reaches.
+// What each frame reaches in which the field is shown.
 struct Reaches {
   std::vector<float> pressure, vorticity, speed;
 };
@@ -79,17 +74,43 @@ struct Reaches {
 void watchFilm(const SceneDocument& document, const SceneSpec& spec, int threads,
                const std::function<void(long, long)>& eachFrame, Reaches& reaches) {
   const long frames = std::max(1L, spec.time.steps / spec.time.stepsPerFrame);
-  World world(coarsened(document, spec, frames), {.threads = threads, .allFields = true});
+  World world(coarsened(document, spec, frames), {.threads = threads});
   Snapshot snapshot;
   std::vector<float> scratch;
   for (long frame = 1; frame <= frames; ++frame) {
     for (int k = 0; k < world.spec().time.stepsPerFrame; ++k) world.step();
     world.capture(snapshot);
-    reaches.pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
-    reaches.vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
-    reaches.speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
+    if (snapshot.shows(LayerKind::pressure))
+      reaches.pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
+    if (snapshot.shows(LayerKind::vorticity))
+      reaches.vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
+    if (snapshot.shows(LayerKind::speed) || snapshot.shows(LayerKind::velocity))
+      reaches.speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
     if (eachFrame) eachFrame(frame, frames);
   }
+}
+
+// Takes the range that the scene gives to a layer; is another one wanted, because a layer that can be shown
+// has none, or an event changes it?
+bool wantsRange(const SceneSpec& spec, LayerKind kind, std::array<double, 2>& range) {
+  bool wanted = eventSetsLayer(spec, kind, "range");
+  for (const LayerSpec& layer : spec.view.layers) {
+    if (layer.kind != kind) continue;
+    if (layer.range)
+      range = *layer.range;
+    else
+      wanted = true;
+  }
+  return wanted && canShow(spec, kind);
+}
+
+// The longest arrow stands for the fastest fluid of the film, unless its scale is given.
+bool wantsArrowScale(const SceneSpec& spec) {
+  return canShow(spec, LayerKind::velocity) &&
+         (eventSetsLayer(spec, LayerKind::velocity, "scale") ||
+          std::any_of(spec.view.layers.begin(), spec.view.layers.end(), [](const LayerSpec& layer) {
+            return layer.kind == LayerKind::velocity && layer.scale == 0;
+          }));
 }
 
 }  // namespace
@@ -105,21 +126,10 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
                       const std::function<void(long done, long frames)>& eachFrame) {
   const SceneSpec spec = document.spec();
   FilmRanges ranges;
-  Wanted wanted;
-  auto look = [](const LayerSpec& layer, bool& want, std::array<double, 2>& range) {
-    if (layer.range)
-      range = *layer.range;
-    else
-      want = true;
-  };
-  for (const LayerSpec& layer : spec.view.layers) {
-    if (layer.kind == LayerKind::pressure) look(layer, wanted.pressure, ranges.pressure);
-    if (layer.kind == LayerKind::vorticity) look(layer, wanted.vorticity, ranges.vorticity);
-    if (layer.kind == LayerKind::speed) look(layer, wanted.speed, ranges.speed);
-  }
-  // A layer may be switched on by an event: then every field is looked at.
-  if (eventSets(spec, "view.layers")) wanted = {true, true, true};
-  if (!spec.hasFluid || !wanted.any()) return ranges;
+  const bool pressure = wantsRange(spec, LayerKind::pressure, ranges.pressure);
+  const bool vorticity = wantsRange(spec, LayerKind::vorticity, ranges.vorticity);
+  const bool speed = wantsRange(spec, LayerKind::speed, ranges.speed) || wantsArrowScale(spec);
+  if (!spec.hasFluid || !(pressure || vorticity || speed)) return ranges;
 
   Reaches reaches;
   try {
@@ -131,9 +141,9 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
     const double top = want ? quantile(reached, 0.95) : 0;
     if (top > 0) range = {bothSigns ? -niceCeiling(top) : 0, niceCeiling(top)};
   };
-  settle(reaches.pressure, wanted.pressure, ranges.pressure, true);
-  settle(reaches.vorticity, wanted.vorticity, ranges.vorticity, true);
-  settle(reaches.speed, wanted.speed, ranges.speed, false);
+  settle(reaches.pressure, pressure, ranges.pressure, true);
+  settle(reaches.vorticity, vorticity, ranges.vorticity, true);
+  settle(reaches.speed, speed, ranges.speed, false);
   return ranges;
 }
 

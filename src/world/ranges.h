@@ -19,9 +19,10 @@ struct FilmRanges {
 };
 
 /// Ranges that the scene gives are taken; others are found by a coarse run, in which all but one value in a
-/// thousand of the film's frames (and all but one frame in twenty, for a violent start) lie inside. Runs
-/// nothing if no layer needs it. `eachFrame` is called after each of the coarse run's frames with how many
-/// there have been, and of how many; what it throws breaks off.
+/// thousand of the frames that show the field (and all but one such frame in twenty, for a violent start) lie
+/// inside; a layer that an event shows counts from then on. Runs nothing if no layer needs it. `eachFrame` is
+/// called after each of the coarse run's frames with how many there have been, and of how many; what it
+/// throws breaks off.
 FilmRanges findRanges(const SceneDocument& document, int threads,
                       const std::function<void(long done, long frames)>& eachFrame = {});
 

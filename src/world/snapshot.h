@@ -1,6 +1,7 @@
 // What a picture needs to know of the world at one moment: a copy, so that the simulation can go on while it
 // is drawn.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -46,9 +47,14 @@ struct Snapshot {
   std::vector<SolidPicture> solids;  // only those shown
   std::vector<ProbePicture> probes;
   std::vector<std::string> captions;  // all that are up now
-  ViewSpec view;                      // as events have left it
+  ViewSpec view;                      // as events have left it, without layers that are not shown
   /// The range of each field for the whole film: what the scene gives, or what was found beforehand.
   std::array<double, 2> pressureRange{-1, 1}, vorticityRange{-1, 1}, speedRange{0, 1};
+
+  bool shows(LayerKind kind) const {
+    return std::any_of(view.layers.begin(), view.layers.end(),
+                       [&](const LayerSpec& layer) { return layer.kind == kind; });
+  }
 };
 
 }  // namespace smokebox

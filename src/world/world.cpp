@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "base/maths.h"
+#include "scene/tree_path.h"
 #include "world/ledger.h"
 #include "world/needs.h"
 
@@ -149,6 +150,7 @@ void World::fireEvents() {
 void World::adoptSettings(const SetAction& action) {
   document_.set(action.path, action.value, action.place);
   spec_ = document_.spec();
+  if (pathSteps(action.path)[0] == "view") return;  // pictures only
   solids_.adopt(spec_.solids);
   for (int k = 0; k < solids_.count(); ++k) {
     const std::string byName = "solids." + spec_.solids[k].name, byIndex = "solids." + std::to_string(k);

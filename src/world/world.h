@@ -26,8 +26,7 @@ class World {
  public:
   struct Options {
     int threads = 1;
-    bool figures = false;    // also momentum, energy, probes and forces of each step
-    bool allFields = false;  // capture pressure, vorticity and velocity whatever the layers are
+    bool figures = false;  // also momentum, energy, probes and forces of each step
   };
 
   /// Throws SceneError if the scene is wrong.
@@ -44,7 +43,7 @@ class World {
   /// Of all steps so far.
   SummaryFigures summary() const;
 
-  /// Copies what the layers of the scene's view need.
+  /// Copies what the layers need that are shown now; the snapshot's view has only these.
   void capture(Snapshot& snapshot) const;
 
   /// 64-bit hash of the whole state (velocity, pressure, smoke, poses); equal for any number of threads.

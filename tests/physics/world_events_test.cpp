@@ -134,6 +134,89 @@ TEST(WorldEvents, LayersCanBeSetWhileRangesAreFound) {
   EXPECT_EQ(ranges.speed[1], 1);
 }
 
+const std::string kPushed =
+    "fluid: {}\nevents:\n"
+    "- {at: 0, force: {circle: {center: [0.5, 0.5], radius: 0.2}, acceleration: [9, 0], for: 0.1}}\n";
+
+bool shows(const World& world, LayerKind kind) {
+  Snapshot snapshot;
+  world.capture(snapshot);
+  return snapshot.shows(kind);
+}
+
+TEST(WorldEvents, LayersAreShownFromTheMomentOn) {
+  // Truth: shown at 0.5 s, its options set at 0.6 s, hidden at 0.75 s; what is not shown is not captured, and
+  // the simulation does not depend on it.
+  const std::string layers = "view: {layers: [time, {pressure: {opacity: 0.6, shown: false}}]}\n";
+  World world = worldOf(layers + kPushed +
+                        "- {at: 0.5, show: pressure}\n- {at: 0.6, set: {view.layers.pressure.opacity: 0.3}}\n"
+                        "- {at: 0.75, hide: [pressure, time]}\n");
+  Snapshot snapshot;
+  world.capture(snapshot);
+  EXPECT_EQ(snapshot.view.layers.size(), 1u);
+  run(world, 30);
+  EXPECT_FALSE(shows(world, LayerKind::pressure));
+  run(world, 31);
+  world.capture(snapshot);
+  ASSERT_EQ(snapshot.view.layers.size(), 2u);
+  EXPECT_EQ(snapshot.view.layers[1].opacity, 0.6);
+  float largest = 0;
+  for (int j = 0; j < 32; ++j)
+    for (int i = 0; i < 32; ++i) largest = std::max(largest, std::fabs(snapshot.pressure(i, j)));
+  EXPECT_GT(largest, 0);
+  run(world, 40);
+  world.capture(snapshot);
+  ASSERT_EQ(snapshot.view.layers.size(), 2u);
+  EXPECT_EQ(snapshot.view.layers[1].opacity, 0.3);
+  run(world, 60);
+  world.capture(snapshot);
+  EXPECT_TRUE(snapshot.view.layers.empty());
+
+  World plain = worldOf(layers + kPushed);
+  run(plain, 60);
+  EXPECT_EQ(plain.stateHash(), world.stateHash());
+}
+
+TEST(WorldEvents, RangesCountTheFramesThatShowTheField) {
+  // Truth: a fluid at rest is pushed for a tenth of a second from the start. A pressure that is hidden at
+  // first has the range of what is seen later, which is smaller; one that is never shown needs no run at all.
+  auto range = [](const std::string& layer, const std::string& event, long& frames) {
+    frames = 0;
+    return findRanges(
+        SceneDocument::parse(kBox + "view: {layers: [" + layer + "]}\n" + kPushed + event, "test.yaml"), 1,
+        [&](long, long of) { frames = of; });
+  };
+  long frames = 0;
+  const double always = range("pressure", "", frames).pressure[1];
+  EXPECT_EQ(frames, 30);
+  const double later =
+      range("{pressure: {shown: false}}", "- {at: 0.5, show: pressure}\n", frames).pressure[1];
+  EXPECT_EQ(frames, 30);
+  EXPECT_LT(later, 0.5 * always);
+  EXPECT_GT(later, 0);
+  range("{pressure: {shown: false}}", "", frames);
+  EXPECT_EQ(frames, 0);
+  const auto given =
+      range("{pressure: {shown: false, range: [-3, 3]}}", "- {at: 0.5, show: pressure}\n", frames);
+  EXPECT_EQ(frames, 0);
+  EXPECT_EQ(given.pressure[1], 3);
+}
+
+TEST(Ranges, TheLongestArrowIsTheFastestFluid) {
+  // Truth: a uniform stream of 0.03 m/s; the arrows' speed is found unless their scale is given.
+  auto fastest = [](const std::string& layer) {
+    return findRanges(SceneDocument::parse(kBox +
+                                               "walls: {left: {inflow: [0.03, 0]}, right: open}\nfluid: "
+                                               "{velocity: [0.03, 0]}\nview: {layers: [" +
+                                               layer + "]}\n",
+                                           "test.yaml"),
+                      1)
+        .speed[1];
+  };
+  EXPECT_NEAR(fastest("velocity"), 0.03, 1e-6);
+  EXPECT_EQ(fastest("{velocity: {scale: 1}}"), 1);
+}
+
 TEST(WorldCapture, ASolidOnAPeriodicSideIsSeenOnBoth) {
   // Truth: a disk of radius 0.1 at x = 0.95 also fills what is left of x = 0.05.
   World world = worldOf(

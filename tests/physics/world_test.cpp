@@ -282,9 +282,34 @@ TEST(Plan, NamesWhatIsModelledAndWhatIsNot) {
     return false;
   };
   EXPECT_TRUE(modelled("fluid"));
+  EXPECT_FALSE(modelled("fields in pictures"));
   EXPECT_TRUE(modelled("vorticity confinement"));
   EXPECT_FALSE(modelled("viscosity"));
   EXPECT_FALSE(modelled("smoke"));
+}
+
+TEST(Plan, SaysWhichFieldsThePicturesShow) {
+  // Truth: a layer that is hidden at first is in the plan if an event shows it, by its name or in a new list.
+  auto fields = [](const std::string& layers, const std::string& events) {
+    const Plan plan = planOf(SceneDocument::parse("domain: {size: [2, 1], resolution: 64}\nfluid: {}\nview: "
+                                                  "{layers: [" +
+                                                      layers + "]}\nevents: [" + events + "]\n",
+                                                  "t")
+                                 .spec());
+    for (const PlanLine& line : plan.lines)
+      if (line.stage == "fields in pictures") return (line.modelled ? "+ " : "- ") + line.why;
+    return std::string();
+  };
+  EXPECT_EQ(fields("smoke, velocity, pressure", ""), "+ pressure, velocity");
+  EXPECT_EQ(fields("{pressure: {shown: false}}", ""), "- pressure is hidden, and no event shows it");
+  EXPECT_EQ(fields("{pressure: {shown: false}}", "{at: 1, hide: pressure}"),
+            "- pressure is hidden, and no event shows it");
+  EXPECT_EQ(fields("speed, {pressure: {shown: false}}", "{at: 1, show: pressure}"),
+            "+ pressure (when an event shows it), speed");
+  EXPECT_EQ(fields("{pressure: {shown: false}}", "{at: 1, set: {view.layers.0.pressure.shown: true}}"),
+            "+ pressure (when an event shows it)");
+  EXPECT_EQ(fields("{pressure: {shown: false}}, smoke", "{at: 1, set: {view.layers.1.smoke.opacity: 0}}"),
+            "- pressure is hidden, and no event shows it");
 }
 
 }  // namespace

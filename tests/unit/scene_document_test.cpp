@@ -269,6 +269,23 @@ TEST(SceneDocument, EventsBecomeSingleActions) {
   EXPECT_EQ(std::get<ForceAction>(spec.events[7].action).shape.pose.position, (Vec2{1, 0.5}));
 }
 
+TEST(SceneDocument, EventsShowAndHideLayers) {
+  // Truth: showing a layer is setting its `shown`; a name that is a solid's too means the solid.
+  const SceneSpec spec = specOf(
+      "fluid: {}\nsolids: [{name: speed, shape: {circle: {radius: .1}}, position: [1, .5]}]\n"
+      "view: {layers: [smoke, bodies, speed, {pressure: {shown: false}}]}\n"
+      "events:\n- {at: 1, show: [pressure, bodies]}\n- {at: 2, hide: smoke}\n- {at: 3, hide: speed}\n");
+  ASSERT_EQ(spec.view.layers.size(), 3u);
+  EXPECT_TRUE(spec.view.layers[0].shown);
+  EXPECT_FALSE(spec.view.layers[2].shown);
+  ASSERT_EQ(spec.events.size(), 4u);
+  EXPECT_EQ(std::get<SetAction>(spec.events[0].action).path, "view.layers.pressure.shown");
+  EXPECT_EQ(std::get<SetAction>(spec.events[0].action).value, "true");
+  EXPECT_EQ(std::get<SetAction>(spec.events[1].action).path, "view.layers.bodies.shown");
+  EXPECT_EQ(std::get<SetAction>(spec.events[2].action).value, "false");
+  EXPECT_EQ(std::get<VisibilityAction>(spec.events[3].action).solid, "speed");
+}
+
 TEST(SceneDocument, ColoursAreReadAsWritten) {
   // Truth: hexadecimal digits and a name of CSS.
   EXPECT_EQ(parseColor("#fff"), (Color{1, 1, 1}));

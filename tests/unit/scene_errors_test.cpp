@@ -280,7 +280,7 @@ TEST(SceneErrors, EventsThatCannotBe) {
   expectFault(head + "{every: 0, caption: a}\n", {"s.yaml:4:11: ", "larger than 0"});
   expectFault(head + "{every: 1e-9, caption: a}\n", {"s.yaml:4:11: ", "a thousandth of a frame"});
   expectFault(head + "{at: 1, set: {fluid.density: 2}, caption: a}\n", {"s.yaml:4:36: a second action"});
-  expectFault(head + "{at: 1, hide: car}\n", {"s.yaml:4:17: ", "no solid is named `car`"});
+  expectFault(head + "{at: 1, stop: car}\n", {"s.yaml:4:17: ", "no solid is named `car`"});
   expectFault(head + "{at: 1, force: {circle: {radius: 1}}}\n",
               {"s.yaml:4:18: ", "acceleration` is missing"});
   expectFault(head + "{at: 1, set: {fluid.vortcity: 1}}\n",
@@ -297,6 +297,31 @@ TEST(SceneErrors, EventsThatCannotBe) {
   expectFault(kDomain + "events:\n- {at: 1, set: {fluid.vorticity: 1}}\n", {"s.yaml:3:17: ", "no fluid"});
   expectFault(kDomain + "events:\n- {at: 1, burst: {circle: {radius: 1}}}\n",
               {"s.yaml:3:18: ", "needs a fluid"});
+}
+
+TEST(SceneErrors, OnlySolidsAndListedLayersCanBeShown) {
+  // Truth: a name that nothing has suggests the nearest solid or layer; a layer that the view does not list
+  // is told so; a name that both have is a warning.
+  const std::string head = kDomain +
+                           "solids: [{name: gate, shape: {circle: {radius: .1}}, position: [1, .5]}]\n"
+                           "view: {layers: [smoke, {pressure: {shown: false}}]}\nfluid: {}\nevents:\n- ";
+  EXPECT_EQ(problemsOf(head + "{at: 1, show: [gate, pressure]}\n"), "");
+  expectFault(head + "{at: 1, hide: car}\n",
+              {"s.yaml:6:17: ", "no solid and no layer is named `car`", "known: gate, smoke, pressure"});
+  expectFault(head + "{at: 1, show: presure}\n", {"s.yaml:6:17: ", "did you mean `pressure`?"});
+  expectFault(head + "{at: 1, show: [pressure, gat]}\n", {"s.yaml:6:28: ", "did you mean `gate`?"});
+  expectFault(head + "{at: 1, show: vorticity}\n",
+              {"s.yaml:6:17: the view has no layer `vorticity`", "{vorticity: {shown: false}}"});
+  expectFault(head + "{at: 1, show: {pressure: 1}}\n", {"s.yaml:6:17: ", "must be a text"});
+  expectFault(head + "{at: 1, stop: pressure}\n", {"s.yaml:6:17: ", "no solid is named `pressure`"});
+  expectFault(head + "{at: 1, set: {view.layers.presure.opacity: 1}}\n",
+              {"s.yaml:6:17: ", "did you mean `pressure`?"});
+  expectFault(kDomain + "view: {layers: [{smoke: {shown: 3}}]}\n",
+              {"`view.layers.0.smoke.shown` must be true"});
+  expectFault(kDomain +
+                  "solids: [{name: smoke, shape: {circle: {radius: .1}}, position: [1, .5]}]\n"
+                  "events: [{at: 1, hide: smoke}]\n",
+              {"s.yaml:3:24: warning: `smoke` is a solid and a layer", "view.layers.smoke.shown"});
 }
 
 TEST(SceneErrors, EmptyItemsOfListsAreNamed) {

@@ -61,6 +61,52 @@ TEST(SceneOverride, MakesWhatTheFileLeavesOut) {
   EXPECT_EQ(withOverride("solids.fan.motion.spin", "90").solids[1].motion.isStill(), false);
 }
 
+LayerSpec layerOf(const SceneSpec& spec, LayerKind kind) {
+  for (const LayerSpec& layer : spec.view.layers)
+    if (layer.kind == kind) return layer;
+  ADD_FAILURE() << "no layer " << layerName(kind);
+  return {};
+}
+
+TEST(SceneOverride, LayersAreReachedByTheirNames) {
+  // Truth: a bare name becomes a map of options; other options and other layers stay; every entry of the name
+  // is reached; without a list the default layers are there.
+  const char* list =
+      "[time, bodies, {pressure: {opacity: 0.6, range: [-2, 2]}}, speed, {speed: {bar: false}}]";
+  auto with = [&](const std::string& path, const std::string& value) {
+    SceneDocument changed = document();
+    changed.set("view.layers", list, kPlace);
+    changed.set(path, value, kPlace);
+    return changed.spec();
+  };
+  const LayerSpec pressure = layerOf(with("view.layers.pressure.range", "[-1, 1]"), LayerKind::pressure);
+  EXPECT_EQ(pressure.range, (std::array<double, 2>{-1, 1}));
+  EXPECT_EQ(pressure.opacity, 0.6);
+  EXPECT_FALSE(layerOf(with("view.layers.time.shown", "false"), LayerKind::time).shown);
+  EXPECT_TRUE(layerOf(with("view.layers.time.shown", "false"), LayerKind::pressure).shown);
+  EXPECT_EQ(layerOf(with("view.layers.pressure", "{bar: false}"), LayerKind::pressure).opacity, 1);
+  const SceneSpec both = with("view.layers.speed.opacity", "1/4");
+  ASSERT_EQ(both.view.layers.size(), 4u);  // no bodies in this version
+  EXPECT_EQ(both.view.layers[2].opacity, 0.25);
+  EXPECT_EQ(both.view.layers[3].opacity, 0.25);
+  EXPECT_FALSE(both.view.layers[3].bar);
+  const SceneSpec byPosition = with("view.layers.3.speed.opacity", "1/4");
+  EXPECT_EQ(byPosition.view.layers[2].opacity, 0.25);
+  EXPECT_EQ(byPosition.view.layers[3].opacity, 1);
+  EXPECT_EQ(with("view.layers.2", "vorticity").view.layers[1].kind, LayerKind::vorticity);
+
+  EXPECT_EQ(layerOf(withOverride("view.layers.smoke.opacity", "0.5"), LayerKind::smoke).opacity, 0.5);
+  EXPECT_EQ(withOverride("view.layers.smoke.opacity", "0.5").view.layers.size(), 3u);
+  EXPECT_NE(faultOf("view.layers.smke.opacity", "1").find("did you mean `smoke`?"), std::string::npos)
+      << faultOf("view.layers.smke.opacity", "1");
+  EXPECT_NE(faultOf("view.layers.pressure.opacity", "1").find("nothing in `view.layers` is named `pressure`"),
+            std::string::npos);
+  EXPECT_NE(faultOf("view.layers.smoke.range", "[0, 1]").find("--set: unknown key `range`"),
+            std::string::npos);
+  EXPECT_NE(faultOf("view.layers.0.opacity", "1").find("view.layers.smoke.opacity"), std::string::npos)
+      << faultOf("view.layers.0.opacity", "1");
+}
+
 TEST(SceneOverride, LeavesOtherCopiesAlone) {
   // Truth: a document is a value.
   const SceneDocument first = document();
