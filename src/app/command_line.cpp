@@ -62,13 +62,62 @@ void addRunOptions(CLI::App& command, RunOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(1, kMaxThreads))
       ->capture_default_str();
+}
+
+void addStats(CLI::App& command, RunOptions& options) {
   command.add_option("--stats", options.stats, "Write the figures of the run as JSON")->type_name("FILE");
 }
 
-void addPictureOptions(CLI::App& command, PictureOptions& options) {
+/// Options whose text is looked at when all has been parsed.
+struct FilmTexts {
+  std::string frames, size;
+};
+
+void addFilmOptions(CLI::App& command, FilmOptions& options, FilmTexts& texts, const std::string& byDefault) {
+  options.threads = hardwareThreads();
+  addRunOptions(command, options);
+  command
+      .add_option("-o,--output", options.outputs,
+                  "Where to: .mp4 (H.264), .mkv (FFV1, lossless), folder/%05d.png (frames), .png (a still), "
+                  "- (Y4M on standard output); may be repeated. Default: " +
+                      byDefault)
+      ->type_name("OUT")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--frames", texts.frames, "Draw only these frames, counted from 0; both are drawn")
+      ->type_name("A-B");
+  command.add_option("--size", texts.size, "Size of the picture in pixels; overrides output.size")
+      ->type_name("WxH");
+  command.add_flag("-y", options.replace, "Replace files that are there");
+  command.add_flag("--quiet", options.quiet, "No progress");
   command.add_option("--gl", options.gl, "Way to OpenGL: osmesa or egl; default: osmesa if it is built in")
       ->type_name("NAME")
       ->check(CLI::IsMember({"osmesa", "egl"}));
+}
+
+void takeFilmTexts(const FilmTexts& texts, FilmOptions& options) {
+  const auto& [frames, size] = texts;
+  if (!frames.empty())
+    options.frames = frames.find('-') == std::string::npos
+                         ? numberPair("--frames", frames + "-" + frames, '-', "A-B")
+                         : numberPair("--frames", frames, '-', "A-B");
+  if (options.frames && options.frames->first > options.frames->second)
+    throw UsageError("--frames: " + frames + " ends before it begins");
+  if (!size.empty()) {
+    const auto [width, height] = numberPair("--size", size, 'x', "WIDTHxHEIGHT");
+    if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels)
+      throw UsageError("--size: " + size + " is not between 1x1 and 16384x16384");
+    // As a setting it goes through the same checks as the scene's own size.
+    options.settings.push_back("output.size=[" + std::to_string(width) + ", " + std::to_string(height) + "]");
+  }
+  for (std::size_t k = 0; k < options.outputs.size(); ++k)
+    if (std::find(options.outputs.begin(), options.outputs.begin() + k, options.outputs[k]) !=
+        options.outputs.begin() + k)
+      throw UsageError("-o " + options.outputs[k] + ": is named twice");
+}
+
+void checkTime(const std::string& option, double time) {
+  if (!std::isfinite(time) || time < 0) throw UsageError(option + ": must be a time from 0, in seconds");
 }
 
 }  // namespace
@@ -82,36 +131,44 @@ Command parseCommandLine(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);
 
   RenderOptions render;
-  std::string frames, size;
+  FilmTexts renderTexts;
   double at = 0;
-  render.threads = hardwareThreads();
   CLI::App* renderCommand =
       app.add_subcommand("render", "Simulate a scene and draw it as a film, frames or a still");
-  addRunOptions(*renderCommand, render);
-  addPictureOptions(*renderCommand, render);
-  renderCommand
-      ->add_option("-o,--output", render.outputs,
-                   "Where to: .mp4 (H.264), .mkv (FFV1, lossless), folder/%05d.png (frames), .png (a still), "
-                   "- (Y4M on "
-                   "standard output); may be repeated. Default: renders/<scene>.mp4")
-      ->type_name("OUT")
-      ->expected(1)
-      ->take_all();
+  addFilmOptions(*renderCommand, render, renderTexts, "renders/<scene>.mp4");
+  addStats(*renderCommand, render);
   CLI::Option* atOption =
       renderCommand->add_option("--at", at, "Time of a still in seconds; default: the last frame")
           ->type_name("T");
-  renderCommand->add_option("--frames", frames, "Draw only these frames, counted from 0; both are drawn")
-      ->type_name("A-B");
-  renderCommand->add_option("--size", size, "Size of the picture in pixels; overrides output.size")
-      ->type_name("WxH");
-  renderCommand->add_flag("-y", render.replace, "Replace files that are there");
-  renderCommand->add_flag("--quiet", render.quiet, "No progress");
+
+  CompareOptions compare;
+  FilmTexts compareTexts;
+  CLI::App* compareCommand = app.add_subcommand(
+      "compare", "Run a scene under several values of a key, in step, as panels of one film");
+  addFilmOptions(*compareCommand, compare, compareTexts, "renders/<scene>-compare.mp4");
+  compareCommand
+      ->add_option("--vary", compare.varied,
+                   "Two to nine values of a key, such as fluid.vorticity=0.3,0; repeated: every combination")
+      ->type_name("KEY=V1,V2")
+      ->required()
+      ->expected(1)
+      ->take_all();
+  compareCommand
+      ->add_option("--stills", compare.stills,
+                   "Times of stills in seconds; they are named after the film, or after a .png of -o")
+      ->type_name("T1,T2")
+      ->delimiter(',')
+      ->expected(1)
+      ->take_all();
+  compareCommand->add_flag("--diff", compare.difference,
+                           "One panel more: where the others differ from the first");
 
   SimulateOptions simulate;
   simulate.threads = hardwareThreads();
   long steps = 0;
   CLI::App* simulateCommand = app.add_subcommand("simulate", "Run a scene without pictures");
   addRunOptions(*simulateCommand, simulate);
+  addStats(*simulateCommand, simulate);
   CLI::Option* stepsOption =
       simulateCommand->add_option("--steps", steps, "Number of steps; replaces the duration")
           ->type_name("N")
@@ -144,29 +201,17 @@ Command parseCommandLine(int argc, const char* const* argv) {
   }
 
   if (renderCommand->parsed()) {
-    if (!frames.empty())
-      render.frames = frames.find('-') == std::string::npos
-                          ? numberPair("--frames", frames + "-" + frames, '-', "A-B")
-                          : numberPair("--frames", frames, '-', "A-B");
-    if (render.frames && render.frames->first > render.frames->second)
-      throw UsageError("--frames: " + frames + " ends before it begins");
-    if (!size.empty()) {
-      const auto [width, height] = numberPair("--size", size, 'x', "WIDTHxHEIGHT");
-      if (width < 1 || height < 1 || width > kMaxPixels || height > kMaxPixels)
-        throw UsageError("--size: " + size + " is not between 1x1 and 16384x16384");
-      // As a setting it goes through the same checks as the scene's own size.
-      render.settings.push_back("output.size=[" + std::to_string(width) + ", " + std::to_string(height) +
-                                "]");
-    }
+    takeFilmTexts(renderTexts, render);
     if (atOption->count()) {
-      if (!std::isfinite(at) || at < 0) throw UsageError("--at: must be a time from 0, in seconds");
+      checkTime("--at", at);
       render.at = at;
     }
-    for (std::size_t k = 0; k < render.outputs.size(); ++k)
-      if (std::find(render.outputs.begin(), render.outputs.begin() + k, render.outputs[k]) !=
-          render.outputs.begin() + k)
-        throw UsageError("-o " + render.outputs[k] + ": is named twice");
     return render;
+  }
+  if (compareCommand->parsed()) {
+    takeFilmTexts(compareTexts, compare);
+    for (const double time : compare.stills) checkTime("--stills", time);
+    return compare;
   }
   if (simulateCommand->parsed()) {
     if (stepsOption->count()) simulate.steps = steps;

@@ -16,16 +16,22 @@ struct RunOptions {
   std::string stats;  // file for the figures; empty: none
 };
 
-/// What every command that draws takes.
-struct PictureOptions {
+/// What every command that makes a film of it takes.
+struct FilmOptions : RunOptions {
+  std::vector<std::string> outputs;             // empty: a name of the command's own in renders/
+  std::optional<std::pair<long, long>> frames;  // first and last, both drawn
+  bool replace = false, quiet = false;
   std::string gl;  // "osmesa" or "egl"; empty: what the build has
 };
 
-struct RenderOptions : RunOptions, PictureOptions {
-  std::vector<std::string> outputs;             // empty: renders/<scene>.mp4
-  std::optional<double> at;                     // s
-  std::optional<std::pair<long, long>> frames;  // first and last, both drawn
-  bool replace = false, quiet = false;
+struct RenderOptions : FilmOptions {
+  std::optional<double> at;  // s
+};
+
+struct CompareOptions : FilmOptions {
+  std::vector<std::string> varied;  // "key=value,value"
+  std::vector<double> stills;       // s
+  bool difference = false;          // a panel of it
 };
 
 struct SimulateOptions : RunOptions {
@@ -46,7 +52,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, RenderOptions, SimulateOptions, CheckOptions, PlanOptions>;
+using Command =
+    std::variant<ShowText, RenderOptions, CompareOptions, SimulateOptions, CheckOptions, PlanOptions>;
 
 /// Throws UsageError.
 Command parseCommandLine(int argc, const char* const* argv);

@@ -6,6 +6,7 @@ namespace smokebox {
 
 int runRender(const RenderOptions& options);
 int runSimulate(const SimulateOptions& options);
+int runCompare(const CompareOptions& options);
 int runCheck(const CheckOptions& options);
 int runPlan(const PlanOptions& options);
 

@@ -25,7 +25,7 @@ FrameRange stillFrame(const FrameRequest& request) {
   const double end = static_cast<double>(request.count) / request.fps;
   if (*request.at > end) {
     char text[80];
-    std::snprintf(text, sizeof text, "--at: the film ends at %g s", end);
+    std::snprintf(text, sizeof text, "%s: the film ends at %g s", request.atOption, end);
     throw UsageError(text);
   }
   const long frame = std::min(std::lround(*request.at * request.fps), request.count - 1);

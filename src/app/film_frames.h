@@ -18,6 +18,7 @@ struct FrameRequest {
   int fps = 30;
   std::optional<std::pair<long, long>> frames;  // first and last of a film's frames
   std::optional<double> at;                     // s; time of a still
+  const char* atOption = "--at";                // what gave it
 };
 
 /// The frames of a film or a sequence. Throws UsageError if they are not all there.

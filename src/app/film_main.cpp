@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   using namespace smokebox;
   return runProgram(argc, argv, [](const Command& command) -> int {
     if (const auto* render = std::get_if<RenderOptions>(&command)) return runRender(*render);
+    if (const auto* compare = std::get_if<CompareOptions>(&command)) return runCompare(*compare);
     throw UsageError("this program only draws; start it through smokebox");
   });
 }

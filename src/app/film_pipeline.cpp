@@ -89,12 +89,16 @@ void FilmPipeline::guarded(Stage&& stage) {
   try {
     stage();
   } catch (...) {
-    {
-      const std::lock_guard lock(errorMutex_);
-      if (!error_) error_ = std::current_exception();
-    }
-    breakOff();
+    fail(std::current_exception());
   }
+}
+
+void FilmPipeline::fail(std::exception_ptr reason) {
+  {
+    const std::lock_guard lock(errorMutex_);
+    if (!error_) error_ = std::move(reason);
+  }
+  breakOff();
 }
 
 void FilmPipeline::breakOff() {

@@ -48,6 +48,8 @@ class FilmPipeline {
   std::unique_ptr<FilmFrame> next();
   /// To be drawn, in the order of the film; from any thread.
   void submit(std::unique_ptr<FilmFrame> frame);
+  /// Breaks off because of what went wrong outside; from any thread. The first reason is kept.
+  void fail(std::exception_ptr reason);
   /// Waits until all is drawn and written, and finishes the outputs. Throws what went wrong in any stage.
   void finish();
 

@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/film_frames.h"
+#include "app/film_outputs.h"
 #include "app/film_pipeline.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
@@ -26,28 +27,10 @@ namespace {
 
 /// The outputs asked for, or renders/<scene>.mp4 with its folder made. What may not be replaced is refused.
 std::vector<std::string> outputNames(const RenderOptions& options, const SceneSpec& spec) {
-  if (options.outputs.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories("renders", error);
-    if (error) throw IoError("renders: cannot make this folder: " + error.message());
-    return {"renders/" + spec.name + ".mp4"};
-  }
-  for (const std::string& output : options.outputs) {
-    outputKind(output);  // all endings first: a typing error is told before anything else
-  }
+  if (options.outputs.empty()) return {inRenders(spec.name + ".mp4")};
   if (!options.replace)
     for (const std::string& output : options.outputs) refuseExisting(output);
   return options.outputs;
-}
-
-void refuseOddSize(const std::vector<std::string>& outputs, const SceneSpec& spec) {
-  const int width = spec.output.width, height = spec.output.height;
-  for (const std::string& output : outputs)
-    if (outputKind(output) == OutputKind::mp4 && (width % 2 || height % 2))
-      throw UsageError(output + ": " + std::to_string(width) + "x" + std::to_string(height) +
-                       ": H.264 needs even width and height; try --size " +
-                       std::to_string(width + width % 2) + "x" + std::to_string(height + height % 2) +
-                       ", or .mkv");
 }
 
 std::vector<FilmOutput> openOutputs(const std::vector<std::string>& names, const FrameRequest& request,
@@ -65,13 +48,6 @@ std::vector<FilmOutput> openOutputs(const std::vector<std::string>& names, const
   return outputs;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + (name == "-" ? "standard output" : name);
-  return text;
-}
-
 }  // namespace
 
 int runRender(const RenderOptions& options) {
@@ -81,7 +57,7 @@ int runRender(const RenderOptions& options) {
   for (const std::string& output : options.outputs) outputKind(output);  // throws if the ending is unknown
   const SceneDocument document = loadScene(options.scene, options.settings);
   const SceneSpec spec = document.spec();
-  refuseTooLarge(spec);
+  refuseTooLarge({spec});
 
   const long count = std::max(1L, spec.time.steps / spec.time.stepsPerFrame);
   const FrameRequest request{count, spec.output.fps, options.frames, options.at};
@@ -93,7 +69,7 @@ int runRender(const RenderOptions& options) {
                            {"scene_hash", document.hash()},
                            {"program", "smokebox " + programVersion()}}};
   const std::vector<std::string> names = outputNames(options, spec);
-  refuseOddSize(names, spec);
+  refuseOddSize(names, spec.output.width, spec.output.height);
   std::vector<FilmOutput> outputs = openOutputs(names, request, format);
   std::optional<StatsFile> stats;
   if (!options.stats.empty()) stats.emplace(options.stats);
@@ -140,9 +116,7 @@ int runRender(const RenderOptions& options) {
   const double seconds = progress.seconds();
   if (stats) stats->write(spec.name, summary, drawn / seconds);
   progress.clear();
-  if (!options.quiet)
-    std::fprintf(stderr, "%s: %ld frame%s in %.1f s (%.1f frames/s)\n", joined(names).c_str(), drawn,
-                 drawn == 1 ? "" : "s", seconds, drawn / seconds);
+  if (!options.quiet) tellDone(names, drawn, seconds);
   return 0;
 }
 

@@ -41,12 +41,16 @@ SceneDocument loadScene(const std::string& file, const std::vector<std::string>&
   return document;
 }
 
-void refuseTooLarge(const SceneSpec& spec) {
-  const double needed = planOf(spec).memoryMb, available = availableMemoryMb();
+void refuseTooLarge(const std::vector<SceneSpec>& specs) {
+  double needed = 0;
+  for (const SceneSpec& spec : specs) needed += planOf(spec).memoryMb;
+  const double available = availableMemoryMb();
   if (needed <= available) return;
+  const Grid& grid = specs.front().domain.grid;
   char text[200];
-  std::snprintf(text, sizeof text, "%d x %d cells need about %.0f MB of memory, and %.0f MB are free; %s",
-                spec.domain.grid.nx, spec.domain.grid.ny, needed, available, "lower domain.resolution");
+  std::snprintf(text, sizeof text, "%s%d x %d cells need about %.0f MB of memory, and %.0f MB are free; %s",
+                specs.size() > 1 ? (std::to_string(specs.size()) + " runs of ").c_str() : "", grid.nx,
+                grid.ny, needed, available, "lower domain.resolution");
   throw Error(ExitStatus::failed, text);
 }
 

@@ -1,0 +1,213 @@
+// `smokebox compare SCENE --vary KEY=V1,V2`: several runs of one scene, in step, as panels of one film.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/film_frames.h"
+#include "app/film_outputs.h"
+#include "app/film_pipeline.h"
+#include "app/film_runs.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/scene_file.h"
+#include "app/variants.h"
+#include "base/errors.h"
+#include "image/difference.h"
+#include "image/sheet.h"
+#include "render/renderer.h"
+
+namespace smokebox {
+
+namespace {
+
+/// Output names with what each takes: true for a still.
+struct Outputs {
+  std::vector<std::string> films;                            // all that are no stills
+  std::vector<std::pair<std::string, FrameRequest>> stills;  // file, and the frame it asks for
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> all = films;
+    for (const auto& [name, request] : stills) all.push_back(name);
+    return all;
+  }
+};
+
+/// "fig.png" at 1.5 s: "fig-1.5.png".
+std::string stillName(const std::string& stem, double time) {
+  char text[40];
+  std::snprintf(text, sizeof text, "-%.6g.png", time);
+  return stem + text;
+}
+
+/// A .png among the outputs stands for all stills, else they go beside the first film that is a file.
+Outputs outputsOf(const CompareOptions& options, const SceneSpec& spec, const FrameRequest& request) {
+  Outputs outputs;
+  std::vector<std::string> stems;
+  std::string beside;
+  for (const std::string& name : options.outputs) {
+    const OutputKind kind = outputKind(name);
+    const std::string stem = std::filesystem::path(name).replace_extension().string();
+    if (kind == OutputKind::pngStill && options.stills.empty()) {
+      outputs.stills.emplace_back(name, request);
+    } else if (kind == OutputKind::pngStill) {
+      stems.push_back(stem);
+    } else {
+      outputs.films.push_back(name);
+      if (beside.empty() && (kind == OutputKind::mp4 || kind == OutputKind::mkv)) beside = stem;
+    }
+  }
+  const std::string compared = spec.name + "-compare";
+  if (options.outputs.empty()) outputs.films.push_back(inRenders(compared + ".mp4"));
+  if (stems.empty() && !options.stills.empty())
+    stems.push_back(beside.empty() ? inRenders(compared) : beside);
+  for (const std::string& stem : stems)
+    for (const double time : options.stills) {
+      FrameRequest still = request;
+      still.at = time;
+      still.atOption = "--stills";
+      outputs.stills.emplace_back(stillName(stem, time), still);
+    }
+  return outputs;
+}
+
+/// Files that were not named with -o are renewed.
+void refuseReplacing(const CompareOptions& options, const Outputs& outputs) {
+  if (options.replace || options.outputs.empty()) return;
+  for (const std::string& name : outputs.names()) refuseExisting(name);
+}
+
+std::vector<FilmOutput> openOutputs(const Outputs& outputs, const FrameRequest& request,
+                                    const FilmFormat& format) {
+  std::vector<FilmOutput> opened;
+  for (const std::string& film : outputs.films)
+    opened.push_back({openSink(film, format), filmFrames(request)});
+  for (const auto& [name, still] : outputs.stills)
+    opened.push_back({openSink(name, format), stillFrame(still)});
+  return opened;
+}
+
+/// Of each pixel the one that is the furthest from the first picture's: what all others differ by.
+void mostDifferent(const std::vector<Image>& pictures, std::size_t count, Image& most) {
+  const Image& first = pictures[0];
+  most = pictures[1];
+  const auto distance = [&](const Image& image, std::size_t at) {
+    int largest = 0;
+    for (std::size_t c = at; c < at + 3; ++c)
+      largest = std::max(largest, std::abs(int{image.rgba[c]} - int{first.rgba[c]}));
+    return largest;
+  };
+  for (std::size_t k = 2; k < count; ++k)
+    for (std::size_t at = 0; at < most.rgba.size(); at += 4)
+      if (distance(pictures[k], at) > distance(most, at))
+        std::copy_n(&pictures[k].rgba[at], 4, &most.rgba[at]);
+}
+
+/// Draws the runs' panels one after the other with one renderer, for all have one size.
+std::function<PaintFrame()> paintSheet(const SheetLayout& layout, const std::vector<std::string>& labels,
+                                       const Color& ground, bool difference, GlBackend backend) {
+  struct Sheet {
+    Renderer renderer;
+    SheetPainter painter;
+    std::vector<Image> panels;
+    Image most;
+  };
+  return [=]() -> PaintFrame {
+    const auto sheet = std::shared_ptr<Sheet>(new Sheet{{layout.panelWidth, layout.panelHeight, backend},
+                                                        {layout, labels, ground},
+                                                        std::vector<Image>(labels.size()),
+                                                        {}});
+    return [sheet, difference](const FilmFrame& frame, Image& image) {
+      const std::size_t runs = frame.panels.size();
+      for (std::size_t k = 0; k < runs; ++k) sheet->renderer.draw(frame.panels[k], sheet->panels[k]);
+      if (difference) {
+        mostDifferent(sheet->panels, runs, sheet->most);
+        sheet->panels[runs] = differencePicture(sheet->panels[0], sheet->most, {}, false);
+      }
+      sheet->painter.paint(sheet->panels, image);
+    };
+  };
+}
+
+std::vector<std::string> labelsOf(const std::vector<Variant>& variants, bool difference) {
+  std::vector<std::string> labels;
+  for (const Variant& variant : variants) labels.push_back(variant.label);
+  if (difference) labels.push_back(variants.size() == 2 ? "difference" : "largest difference from the first");
+  return labels;
+}
+
+std::string variedText(const CompareOptions& options) {
+  std::string text;
+  for (const std::string& varied : options.varied) text += (text.empty() ? "" : " ") + varied;
+  return text;
+}
+
+}  // namespace
+
+int runCompare(const CompareOptions& options) {
+  catchInterrupts();
+  preferDrawingAlone();
+  const GlBackend backend = glBackendNamed(options.gl);
+  for (const std::string& output : options.outputs) outputKind(output);  // throws if the ending is unknown
+  const std::vector<Variant> variants = variantsOf(options.varied);
+  const SceneDocument document = loadScene(options.scene, options.settings);
+  const std::vector<SceneDocument> scenes = variantScenes(document, variants);
+  std::vector<SceneSpec> specs;
+  for (const SceneDocument& scene : scenes) specs.push_back(scene.spec());
+  refuseTooLarge(specs);
+
+  const SceneSpec& spec = specs.front();
+  const FrameRequest request{
+      std::max(1L, spec.time.steps / spec.time.stepsPerFrame), spec.output.fps, options.frames, {}};
+  const std::vector<std::string> labels = labelsOf(variants, options.difference);
+  const SheetLayout layout = layOut(static_cast<int>(labels.size()), spec.output.width, spec.output.height);
+  const FilmFormat format{layout.width,
+                          layout.height,
+                          spec.output.fps,
+                          {{"title", spec.title.empty() ? spec.name : spec.title},
+                           {"scene", spec.name},
+                           {"scene_hash", document.hash()},
+                           {"compared", variedText(options)},
+                           {"program", "smokebox " + programVersion()}}};
+  const Outputs outputs = outputsOf(options, spec, request);
+  refuseReplacing(options, outputs);
+  std::vector<FilmOutput> opened = openOutputs(outputs, request, format);
+  std::vector<FrameRange> wanted;
+  for (const FilmOutput& output : opened) wanted.push_back(output.frames);
+  long last = 0, drawn = 0;
+  for (const FrameRange& frames : wanted) last = std::max(last, frames.last);
+
+  Progress progress(last + 1, options.quiet);
+  {
+    const int runs = static_cast<int>(scenes.size());
+    const int threadsEach = std::max(1, options.threads / runs);
+    const FilmRanges ranges =
+        commonRanges(scenes, threadsEach, [&](long done, long of) { progress.showPreparing(done, of); });
+    FilmPipeline pipeline(runs, std::move(opened),
+                          paintSheet(layout, labels, spec.view.background, options.difference, backend));
+    FilmRuns simulations(scenes, labels, threadsEach, ranges, pipeline);
+    for (long frame = 0; frame <= last; ++frame) {
+      throwIfInterrupted();
+      if (std::any_of(wanted.begin(), wanted.end(), [&](const FrameRange& f) { return f.has(frame); })) {
+        std::unique_ptr<FilmFrame> next = pipeline.next();
+        next->number = frame;
+        simulations.advance(std::move(next));
+        ++drawn;
+        progress.show(frame + 1);
+      }
+    }
+    simulations.finish();
+    pipeline.finish();
+  }
+  progress.clear();
+  if (!options.quiet) tellDone(outputs.names(), drawn, progress.seconds());
+  return 0;
+}
+
+}  // namespace smokebox
