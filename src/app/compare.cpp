@@ -1,5 +1,6 @@
 // `smokebox compare SCENE --vary KEY=V1,V2`: several runs of one scene, in step, as panels of one film.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +20,7 @@
 #include "app/scene_file.h"
 #include "app/variants.h"
 #include "base/errors.h"
-#include "image/difference.h"
+#include "image/colormap.h"
 #include "image/sheet.h"
 #include "render/renderer.h"
 
@@ -93,20 +94,29 @@ std::vector<FilmOutput> openOutputs(const Outputs& outputs, const FrameRequest& 
   return opened;
 }
 
-/// Of each pixel the one that is the furthest from the first picture's: what all others differ by.
-void mostDifferent(const std::vector<Image>& pictures, std::size_t count, Image& most) {
+/// How far the others are from the first picture, in the channel and the picture where it is the most: dark
+/// where they agree. Half of the colours go to the first quarter of the way.
+Image differenceMap(const std::vector<Image>& pictures, std::size_t count) {
+  static const auto colors = [] {
+    std::array<std::array<std::uint8_t, 4>, 256> table{};
+    const ColorMap& map = colorMap(ColorMapKind::speed, true);
+    for (int k = 0; k < 256; ++k) {
+      const Color c = map.at(std::sqrt(k / 255.0));
+      const auto byte = [](float x) { return static_cast<std::uint8_t>(std::lround(255 * x)); };
+      table[k] = {byte(c.r), byte(c.g), byte(c.b), 255};
+    }
+    return table;
+  }();
   const Image& first = pictures[0];
-  most = pictures[1];
-  const auto distance = [&](const Image& image, std::size_t at) {
-    int largest = 0;
-    for (std::size_t c = at; c < at + 3; ++c)
-      largest = std::max(largest, std::abs(int{image.rgba[c]} - int{first.rgba[c]}));
-    return largest;
-  };
-  for (std::size_t k = 2; k < count; ++k)
-    for (std::size_t at = 0; at < most.rgba.size(); at += 4)
-      if (distance(pictures[k], at) > distance(most, at))
-        std::copy_n(&pictures[k].rgba[at], 4, &most.rgba[at]);
+  Image map(first.width, first.height);
+  for (std::size_t at = 0; at < map.rgba.size(); at += 4) {
+    int most = 0;
+    for (std::size_t k = 1; k < count; ++k)
+      for (std::size_t c = at; c < at + 3; ++c)
+        most = std::max(most, std::abs(int{pictures[k].rgba[c]} - int{first.rgba[c]}));
+    std::copy_n(colors[most].data(), 4, &map.rgba[at]);
+  }
+  return map;
 }
 
 /// Draws the runs' panels one after the other with one renderer, for all have one size.
@@ -116,20 +126,15 @@ std::function<PaintFrame()> paintSheet(const SheetLayout& layout, const std::vec
     Renderer renderer;
     SheetPainter painter;
     std::vector<Image> panels;
-    Image most;
   };
   return [=]() -> PaintFrame {
     const auto sheet = std::shared_ptr<Sheet>(new Sheet{{layout.panelWidth, layout.panelHeight, backend},
                                                         {layout, labels, ground},
-                                                        std::vector<Image>(labels.size()),
-                                                        {}});
+                                                        std::vector<Image>(labels.size())});
     return [sheet, difference](const FilmFrame& frame, Image& image) {
       const std::size_t runs = frame.panels.size();
       for (std::size_t k = 0; k < runs; ++k) sheet->renderer.draw(frame.panels[k], sheet->panels[k]);
-      if (difference) {
-        mostDifferent(sheet->panels, runs, sheet->most);
-        sheet->panels[runs] = differencePicture(sheet->panels[0], sheet->most, {}, false);
-      }
+      if (difference) sheet->panels[runs] = differenceMap(sheet->panels, runs);
       sheet->painter.paint(sheet->panels, image);
     };
   };

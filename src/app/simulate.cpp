@@ -13,7 +13,7 @@ namespace smokebox {
 int runSimulate(const SimulateOptions& options) {
   catchInterrupts();
   const SceneDocument document = loadScene(options.scene, options.settings);
-  refuseTooLarge(document.spec());
+  refuseTooLarge({document.spec()});
   std::optional<StatsFile> stats;
   if (!options.stats.empty()) stats.emplace(options.stats);
 

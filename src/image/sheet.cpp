@@ -16,8 +16,6 @@ namespace {
 constexpr double kFont = 21, kLabel = 34, kGap = 6;
 constexpr int kSmallestFont = 9, kSmallestPanel = 16;  // pixels
 
-int even(double pixels) { return static_cast<int>(pixels / 2) * 2; }
-
 double unitOf(int width, int height) { return std::min(height / 720.0, width / 880.0); }
 
 /// Neither ground nor ink, to be seen on any: the ground moved a little towards the other end.
@@ -53,22 +51,26 @@ SheetLayout layOut(int panels, int width, int height) {
   SheetLayout best;
   for (int columns = panels; columns >= 1; --columns) {  // side by side is taken among equals
     SheetLayout layout;
+    layout.panels = panels;
     layout.columns = columns;
     layout.rows = (panels + columns - 1) / columns;
-    layout.labelHeight = std::max(even(kLabel * unit), kSmallestFont + 5);
-    layout.gap = std::max(even(kGap * unit), 2);
+    layout.labelHeight = std::max(static_cast<int>(kLabel * unit), kSmallestFont + 5);
+    layout.gap = std::max(static_cast<int>(kGap * unit), 2);
     const double roomX = static_cast<double>(width - (columns - 1) * layout.gap) / columns;
     const double roomY =
         static_cast<double>(height - (layout.rows - 1) * layout.gap) / layout.rows - layout.labelHeight;
-    const double scale = std::min(roomX / width, roomY / height);
-    layout.panelWidth = even(scale * width);
-    layout.panelHeight = even(scale * height);
+    // A panel's width follows from its height, so that it has the picture's shape to half a pixel.
+    const double scale = std::min((roomX - 0.5) / width, roomY / height);
+    layout.panelHeight = static_cast<int>(scale * height);
+    layout.panelWidth =
+        static_cast<int>(std::lround(static_cast<double>(layout.panelHeight) * width / height));
     if (layout.panelWidth > best.panelWidth) best = layout;
   }
   if (std::min(best.panelWidth, best.panelHeight) < kSmallestPanel)
     throw UsageError(std::to_string(width) + "x" + std::to_string(height) + " has no room for " +
                      std::to_string(panels) + " panels; try a larger --size");
   best.width = best.columns * best.panelWidth + (best.columns - 1) * best.gap;
+  best.width += best.width % 2;
   best.height = best.rows * (best.labelHeight + best.panelHeight) + (best.rows - 1) * best.gap;
   best.height += best.height % 2;
   return best;

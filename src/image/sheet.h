@@ -1,5 +1,6 @@
 // Several pictures of one size on one sheet, in rows, each under a line of text.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,16 @@
 namespace smokebox {
 
 struct SheetLayout {
-  int columns = 1, rows = 1;
-  int panelWidth = 0, panelHeight = 0;  // pixels, even
+  int panels = 1, columns = 1, rows = 1;
+  int panelWidth = 0, panelHeight = 0;  // pixels
   int labelHeight = 0, gap = 0;         // above each panel; between panels
   int width = 0, height = 0;            // of the sheet, even
 
-  /// Left and top of a panel, counted row by row.
-  int left(int panel) const { return panel % columns * (panelWidth + gap); }
+  /// Left and top of a panel, counted row by row; a last row that is not full stands in the middle.
+  int left(int panel) const {
+    const int row = panel / columns, inRow = std::min(columns, panels - row * columns);
+    return (columns - inRow) * (panelWidth + gap) / 2 + panel % columns * (panelWidth + gap);
+  }
   int top(int panel) const { return panel / columns * (labelHeight + panelHeight + gap) + labelHeight; }
 };
 
