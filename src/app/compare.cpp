@@ -28,19 +28,19 @@ namespace smokebox {
 
 namespace {
 
-/// Output names with what each takes: true for a still.
+/// What is to be written, and the frames that each takes.
 struct Outputs {
-  std::vector<std::string> films;                            // all that are no stills
-  std::vector<std::pair<std::string, FrameRequest>> stills;  // file, and the frame it asks for
+  std::vector<std::pair<std::string, FrameRange>> films, stills;
 
   std::vector<std::string> names() const {
-    std::vector<std::string> all = films;
-    for (const auto& [name, request] : stills) all.push_back(name);
+    std::vector<std::string> all;
+    for (const auto* kind : {&films, &stills})
+      for (const auto& [name, frames] : *kind) all.push_back(name);
     return all;
   }
 };
 
-/// "fig.png" at 1.5 s: "fig-1.5.png".
+/// "fig" at 1.5 s: "fig-1.5.png".
 std::string stillName(const std::string& stem, double time) {
   char text[40];
   std::snprintf(text, sizeof text, "-%.6g.png", time);
@@ -48,33 +48,40 @@ std::string stillName(const std::string& stem, double time) {
 }
 
 /// A .png among the outputs stands for all stills, else they go beside the first film that is a file.
-Outputs outputsOf(const CompareOptions& options, const SceneSpec& spec, const FrameRequest& request) {
+Outputs outputsOf(const CompareOptions& options, const SceneSpec& spec) {
+  FrameRequest request{std::max(1L, spec.time.steps / spec.time.stepsPerFrame),
+                       spec.output.fps,
+                       options.frames,
+                       {},
+                       "--stills"};
+  const FrameRange film = filmFrames(request), end = stillFrame(request);
+  std::vector<FrameRange> stillFrames;
+  for (const double time : options.stills) {
+    request.at = time;
+    stillFrames.push_back(stillFrame(request));
+  }
+
   Outputs outputs;
   std::vector<std::string> stems;
   std::string beside;
   for (const std::string& name : options.outputs) {
     const OutputKind kind = outputKind(name);
     const std::string stem = std::filesystem::path(name).replace_extension().string();
-    if (kind == OutputKind::pngStill && options.stills.empty()) {
-      outputs.stills.emplace_back(name, request);
+    if (kind == OutputKind::pngStill && stillFrames.empty()) {
+      outputs.stills.emplace_back(name, end);
     } else if (kind == OutputKind::pngStill) {
       stems.push_back(stem);
     } else {
-      outputs.films.push_back(name);
+      outputs.films.emplace_back(name, film);
       if (beside.empty() && (kind == OutputKind::mp4 || kind == OutputKind::mkv)) beside = stem;
     }
   }
   const std::string compared = spec.name + "-compare";
-  if (options.outputs.empty()) outputs.films.push_back(inRenders(compared + ".mp4"));
-  if (stems.empty() && !options.stills.empty())
-    stems.push_back(beside.empty() ? inRenders(compared) : beside);
+  if (options.outputs.empty()) outputs.films.emplace_back(inRenders(compared + ".mp4"), film);
+  if (stems.empty() && !stillFrames.empty()) stems.push_back(beside.empty() ? inRenders(compared) : beside);
   for (const std::string& stem : stems)
-    for (const double time : options.stills) {
-      FrameRequest still = request;
-      still.at = time;
-      still.atOption = "--stills";
-      outputs.stills.emplace_back(stillName(stem, time), still);
-    }
+    for (std::size_t k = 0; k < stillFrames.size(); ++k)
+      outputs.stills.emplace_back(stillName(stem, options.stills[k]), stillFrames[k]);
   return outputs;
 }
 
@@ -84,14 +91,11 @@ void refuseReplacing(const CompareOptions& options, const Outputs& outputs) {
   for (const std::string& name : outputs.names()) refuseExisting(name);
 }
 
-std::vector<FilmOutput> openOutputs(const Outputs& outputs, const FrameRequest& request,
-                                    const FilmFormat& format) {
-  std::vector<FilmOutput> opened;
-  for (const std::string& film : outputs.films)
-    opened.push_back({openSink(film, format), filmFrames(request)});
-  for (const auto& [name, still] : outputs.stills)
-    opened.push_back({openSink(name, format), stillFrame(still)});
-  return opened;
+std::vector<FilmOutput> opened(const Outputs& outputs, const FilmFormat& format) {
+  std::vector<FilmOutput> all;
+  for (const auto* kind : {&outputs.films, &outputs.stills})
+    for (const auto& [name, frames] : *kind) all.push_back({openSink(name, format), frames});
+  return all;
 }
 
 /// How far the others are from the first picture, in the channel and the picture where it is the most: dark
@@ -147,10 +151,18 @@ std::vector<std::string> labelsOf(const std::vector<Variant>& variants, bool dif
   return labels;
 }
 
-std::string variedText(const CompareOptions& options) {
-  std::string text;
-  for (const std::string& varied : options.varied) text += (text.empty() ? "" : " ") + varied;
-  return text;
+FilmFormat formatOf(const CompareOptions& options, const SceneDocument& document, const SceneSpec& spec,
+                    const SheetLayout& layout) {
+  std::string varied;
+  for (const std::string& text : options.varied) varied += (varied.empty() ? "" : " ") + text;
+  return {layout.width,
+          layout.height,
+          spec.output.fps,
+          {{"title", spec.title.empty() ? spec.name : spec.title},
+           {"scene", spec.name},
+           {"scene_hash", document.hash()},
+           {"compared", varied},
+           {"program", "smokebox " + programVersion()}}};
 }
 
 }  // namespace
@@ -168,23 +180,13 @@ int runCompare(const CompareOptions& options) {
   refuseTooLarge(specs);
 
   const SceneSpec& spec = specs.front();
-  const FrameRequest request{
-      std::max(1L, spec.time.steps / spec.time.stepsPerFrame), spec.output.fps, options.frames, {}};
   const std::vector<std::string> labels = labelsOf(variants, options.difference);
   const SheetLayout layout = layOut(static_cast<int>(labels.size()), spec.output.width, spec.output.height);
-  const FilmFormat format{layout.width,
-                          layout.height,
-                          spec.output.fps,
-                          {{"title", spec.title.empty() ? spec.name : spec.title},
-                           {"scene", spec.name},
-                           {"scene_hash", document.hash()},
-                           {"compared", variedText(options)},
-                           {"program", "smokebox " + programVersion()}}};
-  const Outputs outputs = outputsOf(options, spec, request);
+  const Outputs outputs = outputsOf(options, spec);
   refuseReplacing(options, outputs);
-  std::vector<FilmOutput> opened = openOutputs(outputs, request, format);
+  std::vector<FilmOutput> films = opened(outputs, formatOf(options, document, spec, layout));
   std::vector<FrameRange> wanted;
-  for (const FilmOutput& output : opened) wanted.push_back(output.frames);
+  for (const FilmOutput& film : films) wanted.push_back(film.frames);
   long last = 0, drawn = 0;
   for (const FrameRange& frames : wanted) last = std::max(last, frames.last);
 
@@ -194,7 +196,7 @@ int runCompare(const CompareOptions& options) {
     const int threadsEach = std::max(1, options.threads / runs);
     const FilmRanges ranges =
         commonRanges(scenes, threadsEach, [&](long done, long of) { progress.showPreparing(done, of); });
-    FilmPipeline pipeline(runs, std::move(opened),
+    FilmPipeline pipeline(runs, std::move(films),
                           paintSheet(layout, labels, spec.view.background, options.difference, backend));
     FilmRuns simulations(scenes, labels, threadsEach, ranges, pipeline);
     for (long frame = 0; frame <= last; ++frame) {
