@@ -9,6 +9,7 @@ namespace smokebox {
 using libav::allocated;
 using libav::check;
 using libav::checkWrite;
+using libav::Dictionary;
 
 namespace {
 
@@ -19,21 +20,6 @@ constexpr int kEncoderThreads = 2;
 // What x264's preset does beyond this costs half as much time again, and makes films of smoke 10 to 20%
 // smaller at the same error (wake, 1280x720: 14 ms a frame instead of 9, 50 dB both times).
 constexpr const char* kX264Parameters = "bframes=0:weightp=0:subme=1";
-
-class Dictionary {
- public:
-  ~Dictionary() { av_dict_free(&entries_); }
-  Dictionary() = default;
-  Dictionary(const Dictionary&) = delete;
-  Dictionary& operator=(const Dictionary&) = delete;
-  void set(const std::string& key, const std::string& value) {
-    check(av_dict_set(&entries_, key.c_str(), value.c_str(), 0), key);
-  }
-  AVDictionary** handle() { return &entries_; }
-
- private:
-  AVDictionary* entries_ = nullptr;
-};
 
 std::string sizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 

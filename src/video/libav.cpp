@@ -28,6 +28,12 @@ int checkWrite(int code, const std::string& what) {
   return check(code, what);
 }
 
+int checkRead(int code, const std::string& file) {
+  if (code == AVERROR(ENOMEM)) throw std::bad_alloc();
+  if (code < 0) throw IoError(file + ": cannot be read: " + errorText(code));
+  return code;
+}
+
 Frame makeFrame(int width, int height, AVPixelFormat format) {
   Frame frame(allocated(av_frame_alloc()));
   frame->width = width;

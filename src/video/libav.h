@@ -32,12 +32,29 @@ std::string errorText(int code);
 int check(int code, const std::string& what);
 /// The same for what goes to a file: a code that comes from the system (a full disk) becomes an IoError.
 int checkWrite(int code, const std::string& what);
+/// Whatever is wrong with a film that is read is an IoError "<file>: cannot be read: <reason>".
+int checkRead(int code, const std::string& file);
 /// Throws std::bad_alloc if an allocation of libav gave nothing.
 template <class T>
 T* allocated(T* p) {
   if (!p) throw std::bad_alloc();
   return p;
 }
+/// Options by name.
+class Dictionary {
+ public:
+  Dictionary() = default;
+  ~Dictionary() { av_dict_free(&entries_); }
+  Dictionary(const Dictionary&) = delete;
+  Dictionary& operator=(const Dictionary&) = delete;
+  void set(const std::string& key, const std::string& value) {
+    check(av_dict_set(&entries_, key.c_str(), value.c_str(), 0), key);
+  }
+  AVDictionary** handle() { return &entries_; }
+
+ private:
+  AVDictionary* entries_ = nullptr;
+};
 /// A frame with its own buffer.
 Frame makeFrame(int width, int height, AVPixelFormat format);
 

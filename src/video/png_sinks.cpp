@@ -74,6 +74,25 @@ bool FramePattern::matches(const std::string& name) const {
          static_cast<int>(number.size()) >= digits;
 }
 
+std::vector<long> FramePattern::numbers() const {
+  std::vector<long> numbers;
+  const fs::path from = folder.empty() ? fs::path(".") : folder;
+  std::error_code error;
+  for (fs::directory_iterator entry(from, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    long number = 0;
+    if (matches(name) &&
+        std::from_chars(name.data() + name.find_first_not_of(' ', before.size()), name.data() + name.size(),
+                        number)
+                .ec == std::errc() &&
+        file(number).filename() == name)
+      numbers.push_back(number);
+  }
+  if (error) throw IoError(from.string() + ": cannot read this folder: " + error.message());
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
 PngSequenceSink::PngSequenceSink(FramePattern pattern, const FilmFormat& format)
     : pattern_(std::move(pattern)), metadata_(format.metadata) {
   if (!pattern_.folder.empty()) {

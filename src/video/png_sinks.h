@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "video/sink.h"
 
@@ -21,6 +22,8 @@ struct FramePattern {
   std::filesystem::path file(long frame) const;
   /// `name` is the file of some frame.
   bool matches(const std::string& name) const;
+  /// Of the frames that are there, sorted. Throws IoError if the folder cannot be read.
+  std::vector<long> numbers() const;
 };
 
 /// Each frame is a whole file as soon as it is there, and stays if the film is broken off.
