@@ -183,6 +183,18 @@ Command parseCommandLine(int argc, const char* const* argv) {
   planCommand->add_option("scene", plan.scene, "Scene file (YAML)")->required()->type_name("SCENE");
   addSettings(*planCommand, plan.settings);
 
+  DiffOptions diff;
+  CLI::App* diffCommand =
+      app.add_subcommand("diff", "Compare two pictures or films with the tolerance of the golden tests");
+  diffCommand->add_option("a", diff.a, "Picture (PNG) or film")->required()->type_name("A");
+  diffCommand->add_option("b", diff.b, "What it is compared with")->required()->type_name("B");
+  diffCommand
+      ->add_option("-o,--output", diff.output,
+                   "Where they differ: .png (of films: the worst frame); of films also .mp4, .mkv, "
+                   "folder/%05d.png")
+      ->type_name("OUT");
+  diffCommand->add_flag("-y", diff.replace, "Replace files that are there");
+
   if (argc > 1 && argv[1][0] != '-') refuseUnknownCommand(app, argv[1]);
   try {
     app.parse(argc, argv);
@@ -219,6 +231,7 @@ Command parseCommandLine(int argc, const char* const* argv) {
   }
   if (checkCommand->parsed()) return check;
   if (planCommand->parsed()) return plan;
+  if (diffCommand->parsed()) return diff;
   return ShowText{app.help()};
 }
 

@@ -47,13 +47,19 @@ struct PlanOptions {
   std::vector<std::string> settings;
 };
 
+struct DiffOptions {
+  std::string a, b;    // pictures or films
+  std::string output;  // empty: none
+  bool replace = false;
+};
+
 /// --help and --version: nothing to do but to print this.
 struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<ShowText, RenderOptions, CompareOptions, SimulateOptions, CheckOptions, PlanOptions>;
+using Command = std::variant<ShowText, RenderOptions, CompareOptions, SimulateOptions, CheckOptions,
+                             PlanOptions, DiffOptions>;
 
 /// Throws UsageError.
 Command parseCommandLine(int argc, const char* const* argv);

@@ -7,6 +7,7 @@ namespace smokebox {
 int runRender(const RenderOptions& options);
 int runSimulate(const SimulateOptions& options);
 int runCompare(const CompareOptions& options);
+int runDiff(const DiffOptions& options);
 int runCheck(const CheckOptions& options);
 int runPlan(const PlanOptions& options);
 

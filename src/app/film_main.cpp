@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   return runProgram(argc, argv, [](const Command& command) -> int {
     if (const auto* render = std::get_if<RenderOptions>(&command)) return runRender(*render);
     if (const auto* compare = std::get_if<CompareOptions>(&command)) return runCompare(*compare);
+    if (const auto* diff = std::get_if<DiffOptions>(&command)) return runDiff(*diff);
     throw UsageError("this program only draws; start it through smokebox");
   });
 }
