@@ -43,19 +43,5 @@ TEST(ShippedScenes, AreSoundAndCheckedInFiftyMilliseconds) {
   }
 }
 
-TEST(ShippedScenes, GiveAPictureWithSomethingInIt) {
-  // Truth: a still of each, small and early, is written and is no flat ground.
-  TemporaryFolder folder;
-  int number = 0;
-  for (const std::string& scene : shippedScenes()) {
-    const std::string name = "still" + std::to_string(number++) + ".png";
-    const RunResult run = runProgram({"render", scene, "--at", "0.5", "--size", "320x180", "--set",
-                                      "domain.resolution=128", "-o", name, "--quiet"},
-                                     folder.path());
-    ASSERT_EQ(run.status, 0) << scene << run.err;
-    EXPECT_GT(std::filesystem::file_size(folder / name), 3000u) << scene;
-  }
-}
-
 }  // namespace
 }  // namespace smokebox

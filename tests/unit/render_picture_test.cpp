@@ -10,6 +10,7 @@
 #include "base/maths.h"
 #include "image/colormap.h"
 #include "render/renderer.h"
+#include "support/print_backend.h"
 
 namespace smokebox {
 namespace {
