@@ -81,7 +81,8 @@ class Film {
       std::vector<FilmOutput> outputs;
       outputs.push_back(
           {openSink(file.string(), {output.width, output.height, output.fps, {}}), {0, kFrames - 1}});
-      FilmPipeline pipeline(1, std::move(outputs), paintOnePanel(output.width, output.height));
+      FilmPipeline pipeline(1, std::move(outputs),
+                            paintOnePanel(output.width, output.height, defaultGlBackend()));
       for (int k = 0; k < kFrames; ++k) {
         std::unique_ptr<FilmFrame> frame = pipeline.next();
         frame->number = k;

@@ -1,0 +1,80 @@
+// A whole step against Stam's (see stam_step.h) at the same size, in turn: a plume of smoke of one colour
+// past a disk, with vorticity confinement, to a divergence of 1e-5. Argument: cells along a side. The last
+// 100 of 200 steps count. Counters: times_faster, and milliseconds of each stage.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <map>
+#include <string>
+
+#include "stam_step.h"
+#include "world/world.h"
+
+namespace smokebox {
+namespace {
+
+constexpr int kWarm = 100, kCounted = 100, kTurn = 10;
+
+std::string plume(int n) {
+  return "domain: {size: [1, 1], resolution: " + std::to_string(n) +
+         R"(}
+walls: {top: open}
+time: {step: 1/60, duration: 100}
+gravity: [0, -9.81]
+fluid: {vorticity: 0.3}
+smoke:
+  buoyancy: 0.6
+  sources: [{shape: {circle: {center: [0.5, 0.1], radius: 0.05}}, rate: 4}]
+solids: [{name: disk, shape: {circle: {radius: 0.1}}, position: [0.52, 0.5]}]
+output: {fps: 30}
+)";
+}
+
+double seconds(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void stepAgainstStam(benchmark::State& state) {
+  const int n = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
+  World world(SceneDocument::parse(plume(n), "plume.yaml"), {.threads = threads});
+  test::StamStep stam(n);
+  for (int k = 0; k < kWarm; ++k) world.step();
+  double ours = 0, theirs = 0, worst = 0, iterations = 0;
+  std::map<std::string, double> stages;
+  for (auto _ : state) {
+    for (int turn = 0; turn < kCounted / kTurn; ++turn) {
+      ours += seconds([&] {
+                for (int k = 0; k < kTurn; ++k) {
+                  world.step();
+                  worst = std::max(worst, world.figures().divergence);
+                  iterations += world.figures().iterations;
+                  for (const auto& [name, ms] : world.figures().stageMs) stages[name] += ms / kCounted;
+                }
+              }) /
+              kCounted;
+      theirs += seconds([&] { stam.step(1.0f / 60, 1e-5f, 1e-5f); }) / (kCounted / kTurn);
+    }
+  }
+  benchmark::DoNotOptimize(stam.density(n / 2, n / 2));
+  state.counters["ours_ms"] = 1e3 * ours;
+  state.counters["stam_ms"] = 1e3 * theirs;
+  state.counters["times_faster"] = theirs / ours;
+  state.counters["divergence"] = worst;
+  state.counters["iterations"] = iterations / kCounted;
+  state.counters["ns_a_cell"] = 1e9 * ours / (static_cast<double>(n) * n);
+  for (const auto& [name, ms] : stages) state.counters["ms_" + name] = ms;
+}
+BENCHMARK(stepAgainstStam)
+    ->ArgNames({"cells", "threads"})
+    ->Args({256, 1})
+    ->Args({512, 1})
+    ->Args({1024, 1})
+    ->Args({1024, 2})
+    ->Args({2048, 1})
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+
+}  // namespace
+}  // namespace smokebox
