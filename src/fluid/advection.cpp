@@ -26,6 +26,7 @@ struct Advection::Impl {
       : pool(threads),
         extension(boundary, threads),
         near(boundary),
+        semiLagrangian(threads),
         u1(boundary.grid.nx, boundary.grid.ny),
         v1(boundary.grid.nx, boundary.grid.ny),
         u2(boundary.grid.nx, boundary.grid.ny),
@@ -70,26 +71,39 @@ struct Advection::Impl {
     v.swap(v1);
   }
 
-  /// u -= share grad phi - dt acceleration, on open faces.
+  /// u += dt acceleration - grad phi, on open faces.
   void addImpulse(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
                   const Field* accelerationV, double dt) {
     const int nx = boundary.grid.nx, ny = boundary.grid.ny;
     const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
     const auto seconds = static_cast<float>(dt);
+    auto push = [&](float* q, const float* open, const float* acceleration, const float* ahead,
+                    const float* behind, int begin, int end) {
+      if (acceleration) {
+#pragma omp simd
+        for (int i = begin; i < end; ++i)
+          q[i] += open[i] > 0 ? seconds * acceleration[i] - (ahead[i] - behind[i]) : 0.0f;
+      } else {
+#pragma omp simd
+        for (int i = begin; i < end; ++i) q[i] += open[i] > 0 ? behind[i] - ahead[i] : 0.0f;
+      }
+    };
+    const std::vector<float> beyond(nx, 0.0f);
     pool.blocks(0, wrapY ? ny : ny + 1, kRowGrain, [&](int begin, int end) {
       for (int j = begin; j < end; ++j) {
-        for (int i = 0; j < ny && i < (wrapX ? nx : nx + 1); ++i) {
-          if (!(boundary.openX(i, j) > 0)) continue;
-          const float ahead = i < nx ? phi(i, j) : 0.0f;
-          const float behind = i > 0 ? phi(i - 1, j) : wrapX ? phi(nx - 1, j) : 0.0f;
-          u(i, j) += (accelerationU ? seconds * (*accelerationU)(i, j) : 0.0f) - (ahead - behind);
-        }
-        for (int i = 0; i < nx; ++i) {
-          if (!(boundary.openY(i, j) > 0)) continue;
-          const float ahead = j < ny ? phi(i, j) : 0.0f;
-          const float behind = j > 0 ? phi(i, j - 1) : wrapY ? phi(i, ny - 1) : 0.0f;
-          v(i, j) += (accelerationV ? seconds * (*accelerationV)(i, j) : 0.0f) - (ahead - behind);
-        }
+        const float *rowU = accelerationU ? accelerationU->row(j) : nullptr,
+                    *rowV = accelerationV ? accelerationV->row(j) : nullptr;
+        const float *at = j < ny ? phi.row(j) : beyond.data(), *below = j > 0   ? phi.row(j - 1)
+                                                                        : wrapY ? phi.row(ny - 1)
+                                                                                : beyond.data();
+        push(v.row(j), boundary.openY.row(j), rowV, at, below, 0, nx);
+        if (j == ny) continue;
+        push(u.row(j), boundary.openX.row(j), rowU, at, at - 1, 1, nx);
+        auto edge = [&](int i, float ahead, float behind) {
+          if (boundary.openX(i, j) > 0) u(i, j) += (rowU ? seconds * rowU[i] : 0.0f) - (ahead - behind);
+        };
+        edge(0, at[0], wrapX ? at[nx - 1] : 0.0f);
+        if (!wrapX) edge(nx, 0.0f, at[nx - 1]);
       }
     });
   }
@@ -115,6 +129,7 @@ struct Advection::Impl {
   ThreadPool& pool;
   VelocityExtension extension;
   NearFaces near;
+  SemiLagrangian semiLagrangian;
   Field u1, v1, u2, v2;  // after the first and the second stage
 };
 
@@ -126,6 +141,7 @@ Advection::~Advection() = default;
 void Advection::rebuild(const Boundary& boundary) {
   impl_->extension.rebuild(boundary);
   impl_->near.rebuild(boundary, impl_->extension, impl_->pool);
+  impl_->semiLagrangian.rebuild();
 }
 
 Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& v, const Field& phi,
@@ -145,7 +161,7 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     }
     return result;
   }
-  carrySemiLagrangian(boundary, u, v, dt, m.extension.anySolid(), m.pool, m.u1, m.v1);
+  m.semiLagrangian.carry(boundary, u, v, dt, result.courant, m.extension.anySolid(), m.u1, m.v1);
   m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt);
   m.extension.apply(boundary, m.u1, m.v1);
   u.swap(m.u1);
@@ -158,8 +174,8 @@ void Advection::extend(const Boundary& boundary, Field& u, Field& v) const {
 }
 
 std::size_t Advection::bytes() const {
-  return impl_->extension.bytes() + impl_->near.bytes() + impl_->u1.bytes() + impl_->v1.bytes() +
-         impl_->u2.bytes() + impl_->v2.bytes();
+  return impl_->extension.bytes() + impl_->near.bytes() + impl_->semiLagrangian.bytes() + impl_->u1.bytes() +
+         impl_->v1.bytes() + impl_->u2.bytes() + impl_->v2.bytes();
 }
 
 void extendVelocity(const Boundary& boundary, Field& u, Field& v) {

@@ -3,157 +3,240 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fluid/paths_beside_solids.h"
+
 namespace smokebox {
 
 namespace {
 
 constexpr int kRowGrain = 8;
+constexpr int kTile = 64;   // faces of a row that are worked on together
+constexpr int kBlock = 16;  // cells along a side of the blocks that are looked through for solids
 
-struct Point {  // in cells
-  float x = 0, y = 0;
+// The 4 samples of a row that an interpolation reads, or their weights.
+typedef float Quad __attribute__((vector_size(16), aligned(4), may_alias));
+
+inline Quad quadAt(const float* p) { return *reinterpret_cast<const Quad*>(p); }
+
+/// Catmull-Rom.
+inline Quad weights(float a) {
+  constexpr Quad c0 = {0, 1, 0, 0}, c1 = {-0.5f, 0, 0.5f, 0}, c2 = {1, -2.5f, 2, -0.5f},
+                 c3 = {-0.5f, 1.5f, -1.5f, 0.5f};
+  return c0 + a * (c1 + a * (c2 + a * c3));
+}
+
+inline Quad smaller(const Quad& a, const Quad& b) { return a < b ? a : b; }
+inline Quad larger(const Quad& a, const Quad& b) { return a > b ? a : b; }
+
+/// Between the 16 samples around p + (a, b), 0 <= a, b <= 1, and within the range of the middle four.
+inline float limitedCubic(const float* p, std::ptrdiff_t stride, float a, float b) {
+  const Quad wx = weights(a), wy = weights(b);
+  const Quad r0 = quadAt(p - stride - 1), r1 = quadAt(p - 1), r2 = quadAt(p + stride - 1),
+             r3 = quadAt(p + 2 * stride - 1);
+  const Quad product = wx * ((wy[1] * r1 + wy[2] * r2) + (wy[0] * r0 + wy[3] * r3));
+  const float sum = (product[1] + product[2]) + (product[0] + product[3]);
+  const Quad low = smaller(r1, r2), high = larger(r1, r2);
+  return std::min(std::max(sum, std::min(low[1], low[2])), std::max(high[1], high[2]));
+}
+
+struct Sample {
+  float below, share;  // the sample below a place, and how far the place is beyond it
 };
 
-class Paths {
- public:
-  Paths(const Boundary& boundary, const Field& u, const Field& v, double dt, bool anySolid)
-      : boundary_(boundary),
-        u_(u),
-        v_(v),
-        nx_(boundary.grid.nx),
-        ny_(boundary.grid.ny),
-        scale_(static_cast<float>(dt / boundary.grid.h)),
-        anySolid_(anySolid) {}
-
-  float carriedU(int i, int j) const {
-    const Point foot = footOf({static_cast<float>(i), static_cast<float>(j) + 0.5f});
-    return limitedCubic(u_, foot.x, foot.y - 0.5f);
+/// A place `offset` from sample `from`, whose own place is `shift` past the domain's begin: kept inside the
+/// `size` cells, or wrapped. What is not a number goes to a side.
+template <bool Periodic>
+inline Sample sampleAt(float size, float from, float shift, float offset) {
+  const float lowest = Periodic ? -size : -(from + shift), highest = Periodic ? size : size - (from + shift);
+  offset = offset > lowest ? offset : lowest;
+  offset = offset < highest ? offset : highest;
+  const float whole = std::floor(offset);
+  float sample = from + whole;
+  if (Periodic) {
+    sample += sample < 0 ? size : 0.0f;
+    sample -= sample < size ? 0.0f : size;
   }
-  float carriedV(int i, int j) const {
-    const Point foot = footOf({static_cast<float>(i) + 0.5f, static_cast<float>(j)});
-    return limitedCubic(v_, foot.x - 0.5f, foot.y);
+  return {sample, offset - whole};
+}
+
+/// The feet of the paths that lead to some faces of a row, as samples of the same component.
+struct Feet {
+  alignas(64) float column[kTile], row[kTile], shareX[kTile], shareY[kTile];
+};
+
+/// Paths far from solids, many at a time.
+class OpenPaths {
+ public:
+  OpenPaths(const Boundary& boundary, const Field& u, const Field& v, double dt)
+      : u_(u), v_(v), boundary_(boundary), scale_(static_cast<float>(dt / boundary.grid.h)) {}
+
+  void feetOfU(int begin, int count, int j, Feet& feet) const {
+    const float *below = v_.row(j) + begin, *above = v_.row(j + 1) + begin, *along = u_.row(j) + begin;
+    alignas(64) float across[kTile];
+#pragma omp simd
+    for (int k = 0; k < count; ++k)
+      across[k] = 0.25f * ((below[k - 1] + below[k]) + (above[k - 1] + above[k]));
+    findFeet(begin, count, j, 0.0f, 0.5f, along, across, feet);
+  }
+  void feetOfV(int begin, int count, int j, Feet& feet) const {
+    const float *below = u_.row(j - 1) + begin, *above = u_.row(j) + begin, *along = v_.row(j) + begin;
+    alignas(64) float across[kTile];
+#pragma omp simd
+    for (int k = 0; k < count; ++k)
+      across[k] = 0.25f * ((below[k] + below[k + 1]) + (above[k] + above[k + 1]));
+    findFeet(begin, count, j, 0.5f, 0.0f, across, along, feet);
   }
 
  private:
-  static float wrapped(float x, int n) {
-    const auto size = static_cast<float>(n);
-    const float y = x - size * std::floor(x / size);
-    return y >= 0 && y < size ? y : 0;  // what is not finite goes to 0
-  }
-  Point insideDomain(Point p) const {
-    // fmin and fmax drop what is not a number.
-    p.x =
-        boundary_.periodicX() ? wrapped(p.x, nx_) : std::fmin(std::fmax(p.x, 0.0f), static_cast<float>(nx_));
-    p.y =
-        boundary_.periodicY() ? wrapped(p.y, ny_) : std::fmin(std::fmax(p.y, 0.0f), static_cast<float>(ny_));
-    return p;
+  static float bilinear(const float* f, int stride, const Sample& x, const Sample& y) {
+    const int at = static_cast<int>(y.below) * stride + static_cast<int>(x.below);
+    const float a = x.share, b = y.share;
+    return (1 - b) * ((1 - a) * f[at] + a * f[at + 1]) +
+           b * ((1 - a) * f[at + stride] + a * f[at + stride + 1]);
   }
 
-  /// Interpolation between the four nearest samples; (x, y) in samples, from -1/2 to n + 1/2.
-  static float bilinear(const Field& f, float x, float y) {
-    const float fx = std::floor(x), fy = std::floor(y), a = x - fx, b = y - fy;
-    const float* p = f.row(static_cast<int>(fy)) + static_cast<int>(fx);
-    const float* q = p + f.stride();
-    return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * q[0] + a * q[1]);
+  /// (shiftX, shiftY): of the faces from the grid's nodes; vx, vy: velocity at the faces.
+  void findFeet(int begin, int count, int j, float shiftX, float shiftY, const float* vx, const float* vy,
+                Feet& feet) const {
+    const bool px = boundary_.periodicX(), py = boundary_.periodicY();
+    const auto find = px && py ? &OpenPaths::find<true, true>
+                      : px     ? &OpenPaths::find<true, false>
+                      : py     ? &OpenPaths::find<false, true>
+                               : &OpenPaths::find<false, false>;
+    (this->*find)(begin, count, j, shiftX, shiftY, vx, vy, feet);
   }
 
-  static float limitedCubic(const Field& f, float x, float y) {
-    const float fx = std::floor(x), fy = std::floor(y);
-    float wx[4], wy[4];
-    weights(x - fx, wx);
-    weights(y - fy, wy);
-    const float* p = f.row(static_cast<int>(fy)) + static_cast<int>(fx);
-    const std::ptrdiff_t stride = f.stride();
-    float sum = 0;
-    for (int k = 0; k < 4; ++k) {
-      const float* q = p + (k - 1) * stride;
-      sum += wy[k] * ((wx[0] * q[-1] + wx[3] * q[2]) + (wx[1] * q[0] + wx[2] * q[1]));
+  template <bool PeriodicX, bool PeriodicY>
+  void find(int begin, int count, int j, float shiftX, float shiftY, const float* vx, const float* vy,
+            Feet& feet) const {
+    const float *u = u_.row(0), *v = v_.row(0);
+    const int stride = static_cast<int>(u_.stride());
+    const float half = -0.5f * scale_, whole = -scale_;
+    const auto row = static_cast<float>(j), sizeX = static_cast<float>(boundary_.grid.nx),
+               sizeY = static_cast<float>(boundary_.grid.ny);
+#pragma omp simd
+    for (int k = 0; k < count; ++k) {
+      const auto column = static_cast<float>(begin + k);
+      const float dx = half * vx[k], dy = half * vy[k];
+      // The samples of u are (0, 1/2) from the nodes, those of v (1/2, 0).
+      const Sample xu = sampleAt<PeriodicX>(sizeX, column, 0.0f, dx + shiftX),
+                   yu = sampleAt<PeriodicY>(sizeY, row, 0.5f, dy + (shiftY - 0.5f));
+      const float ux = bilinear(u, stride, xu, yu);
+      const Sample xv = sampleAt<PeriodicX>(sizeX, column, 0.5f, dx + (shiftX - 0.5f)),
+                   yv = sampleAt<PeriodicY>(sizeY, row, 0.0f, dy + shiftY);
+      const float uy = bilinear(v, stride, xv, yv);
+      const Sample x = sampleAt<PeriodicX>(sizeX, column, shiftX, whole * ux),
+                   y = sampleAt<PeriodicY>(sizeY, row, shiftY, whole * uy);
+      feet.column[k] = x.below;
+      feet.shareX[k] = x.share;
+      feet.row[k] = y.below;
+      feet.shareY[k] = y.share;
     }
-    const float low = std::min(std::min(p[0], p[1]), std::min(p[stride], p[stride + 1]));
-    const float high = std::max(std::max(p[0], p[1]), std::max(p[stride], p[stride + 1]));
-    return std::min(std::max(sum, low), high);
   }
 
-  /// Catmull-Rom.
-  static void weights(float a, float* w) {
-    const float a2 = a * a, a3 = a2 * a;
-    w[0] = -0.5f * a + a2 - 0.5f * a3;
-    w[1] = 1 - 2.5f * a2 + 1.5f * a3;
-    w[2] = 0.5f * a + 2 * a2 - 1.5f * a3;
-    w[3] = -0.5f * a2 + 0.5f * a3;
-  }
-
-  Point velocityAt(Point p) const { return {bilinear(u_, p.x, p.y - 0.5f), bilinear(v_, p.x - 0.5f, p.y)}; }
-
-  Point footOf(Point start) const {
-    const Point atStart = velocityAt(start);
-    const Point middle =
-        lastFluid(start, {start.x - 0.5f * scale_ * atStart.x, start.y - 0.5f * scale_ * atStart.y});
-    const Point there = velocityAt(middle);
-    return lastFluid(start, {start.x - scale_ * there.x, start.y - scale_ * there.y});
-  }
-
-  /// The end of a straight path, or where it first meets a shut face on its way from cell to cell (Amanatides
-  /// and Woo 1987); inside the domain.
-  Point lastFluid(Point from, Point to) const {
-    if (!anySolid_) return insideDomain(to);
-    const float dx = to.x - from.x, dy = to.y - from.y;
-    // A start on a face belongs to the cell that the path leads into.
-    int i = cellOf(from.x, dx), j = cellOf(from.y, dy);
-    const int stepX = dx > 0 ? 1 : -1, stepY = dy > 0 ? 1 : -1;
-    // Path parameter at the next crossing of a column's or a row's border; a path longer than the domain
-    // tells no more.
-    float t = 0;
-    for (int crossings = 0; crossings < 2 * (nx_ + ny_); ++crossings) {
-      const float tx = dx != 0 ? (static_cast<float>(dx > 0 ? i + 1 : i) - from.x) / dx : 2;
-      const float ty = dy != 0 ? (static_cast<float>(dy > 0 ? j + 1 : j) - from.y) / dy : 2;
-      if (!(std::min(tx, ty) < 1)) return insideDomain(to);
-      t = std::min(tx, ty);
-      if (tx < ty) {
-        if (!passes(boundary_.openX, dx > 0 ? i + 1 : i, j, true)) break;
-        i += stepX;
-      } else {
-        if (!passes(boundary_.openY, i, dy > 0 ? j + 1 : j, false)) break;
-        j += stepY;
-      }
-    }
-    return insideDomain({from.x + t * dx, from.y + t * dy});
-  }
-
-  static int cellOf(float x, float direction) {
-    const float cell = std::floor(x);
-    return static_cast<int>(cell) - (cell == x && direction < 0 ? 1 : 0);
-  }
-
-  /// Whether a path may cross a face; at the sides of the domain it ends, unless they are periodic.
-  bool passes(const Field& open, int i, int j, bool alongX) const {
-    if (boundary_.periodicX()) i = ((i % nx_) + nx_) % nx_;
-    if (boundary_.periodicY()) j = ((j % ny_) + ny_) % ny_;
-    const bool inside = alongX ? i > 0 - boundary_.periodicX() && i < nx_ && j >= 0 && j < ny_
-                               : j > 0 - boundary_.periodicY() && j < ny_ && i >= 0 && i < nx_;
-    return inside && open(i, j) > 0;
-  }
-
-  const Boundary& boundary_;
   const Field &u_, &v_;
-  const int nx_, ny_;
+  const Boundary& boundary_;
   const float scale_;  // cells per m/s
-  const bool anySolid_;
 };
+
+/// Interpolates at the feet, where faces are open.
+void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, float* out) {
+  const float* samples = f.row(0);
+  const std::ptrdiff_t stride = f.stride();
+  for (int k = 0; k < count; ++k) {
+    if (!(open[k] > 0)) continue;
+    const float* p = samples + (static_cast<std::ptrdiff_t>(feet.row[k]) * stride +
+                                static_cast<std::ptrdiff_t>(feet.column[k]));
+    out[k] = limitedCubic(p, stride, feet.shareX[k], feet.shareY[k]);
+  }
+}
+
+float takeAt(const Field& f, float x, float y) {
+  const float fx = std::floor(x), fy = std::floor(y);
+  return limitedCubic(f.row(static_cast<int>(fy)) + static_cast<int>(fx), f.stride(), x - fx, y - fy);
+}
 
 }  // namespace
 
-void carrySemiLagrangian(const Boundary& boundary, const Field& u, const Field& v, double dt, bool anySolid,
-                         ThreadPool& pool, Field& outU, Field& outV) {
+void SemiLagrangian::findShutBlocks(const Boundary& boundary) {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  blocksX_ = (nx + kBlock - 1) / kBlock;
+  blocksY_ = (ny + kBlock - 1) / kBlock;
+  const int row = blocksX_ + 1;
+  shutBlocks_.assign(static_cast<std::size_t>(row) * (blocksY_ + 1), 0);
+  pool_.blocks(0, blocksY_, 1, [&](int begin, int end) {
+    for (int b = begin; b < end; ++b)
+      for (int j = b * kBlock; j < std::min(ny, (b + 1) * kBlock); ++j) {
+        const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
+        for (int a = 0; a < blocksX_; ++a) {
+          int shut = 0;
+          for (int i = a * kBlock; i < std::min(nx, (a + 1) * kBlock); ++i)
+            shut |= (i > 0 && !(openX[i] > 0)) | (j > 0 && !(openY[i] > 0));
+          shutBlocks_[static_cast<std::size_t>(b + 1) * row + a + 1] |= shut;
+        }
+      }
+  });
+  for (int b = 1; b <= blocksY_; ++b)
+    for (int a = 1; a <= blocksX_; ++a) {
+      int* at = &shutBlocks_[static_cast<std::size_t>(b) * row + a];
+      *at += at[-1] + at[-row] - at[-row - 1];
+    }
+}
+
+bool SemiLagrangian::anyShut(int i0, int i1, int j0, int j1) const {
+  // A block's faces are those on its left and its lower sides: one more on the others.
+  const int row = blocksX_ + 1;
+  const int a0 = std::clamp(i0 / kBlock, 0, blocksX_), a1 = std::clamp(i1 / kBlock + 1, 0, blocksX_);
+  const int b0 = std::clamp(j0 / kBlock, 0, blocksY_), b1 = std::clamp(j1 / kBlock + 1, 0, blocksY_);
+  const int* table = shutBlocks_.data();
+  return table[b1 * row + a1] - table[b0 * row + a1] - table[b1 * row + a0] + table[b0 * row + a0] > 0;
+}
+
+void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field& v, double dt, double reach,
+                           bool anySolid, Field& outU, Field& outV) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const int columns = boundary.periodicX() ? nx : nx + 1, rows = boundary.periodicY() ? ny : ny + 1;
-  const Paths paths(boundary, u, v, dt, anySolid);
-  pool.blocks(0, rows, kRowGrain, [&](int begin, int end) {
+  if (anySolid && shutBlocks_.empty()) findShutBlocks(boundary);
+  const int cells = static_cast<int>(std::min(reach, 1e6)) + 2;  // one for rounding, one for what is read
+  // On a periodic grid a path may come in on the other side: then all of the grid is within reach.
+  auto nearSolid = [&](int begin, int count, int j) {
+    if (!anySolid) return false;
+    int i0 = begin - cells, i1 = begin + count + cells, j0 = j - cells, j1 = j + cells;
+    if (boundary.periodicX() && (i0 < 0 || i1 > nx)) i0 = 0, i1 = nx;
+    if (boundary.periodicY() && (j0 < 0 || j1 > ny)) j0 = 0, j1 = ny;
+    return anyShut(i0, i1, j0, j1);
+  };
+  const OpenPaths open(boundary, u, v, dt);
+  const PathsBesideSolids careful(boundary, u, v, dt);
+  pool_.blocks(0, rows, kRowGrain, [&](int begin, int end) {
+    Feet feet;
     for (int j = begin; j < end; ++j) {
-      if (j < ny)
-        for (int i = 0; i < columns; ++i)
-          if (boundary.openX(i, j) > 0) outU(i, j) = paths.carriedU(i, j);
-      for (int i = 0; i < nx; ++i)
-        if (boundary.openY(i, j) > 0) outV(i, j) = paths.carriedV(i, j);
+      for (int x0 = 0; j < ny && x0 < columns; x0 += kTile) {
+        const int count = std::min(kTile, columns - x0);
+        if (!nearSolid(x0, count, j)) {
+          open.feetOfU(x0, count, j, feet);
+          takeAtFeet(u, feet, boundary.openX.row(j) + x0, count, outU.row(j) + x0);
+          continue;
+        }
+        for (int i = x0; i < x0 + count; ++i)
+          if (boundary.openX(i, j) > 0) {
+            const auto foot = careful.footOfU(i, j);
+            outU(i, j) = takeAt(u, foot.x, foot.y - 0.5f);
+          }
+      }
+      for (int x0 = 0; x0 < nx; x0 += kTile) {
+        const int count = std::min(kTile, nx - x0);
+        if (!nearSolid(x0, count, j)) {
+          open.feetOfV(x0, count, j, feet);
+          takeAtFeet(v, feet, boundary.openY.row(j) + x0, count, outV.row(j) + x0);
+          continue;
+        }
+        for (int i = x0; i < x0 + count; ++i)
+          if (boundary.openY(i, j) > 0) {
+            const auto foot = careful.footOfV(i, j);
+            outV(i, j) = takeAt(v, foot.x - 0.5f, foot.y);
+          }
+      }
     }
   });
 }
