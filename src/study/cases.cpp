@@ -1,0 +1,7 @@
+#include "study/cases.h"
+
+namespace smokebox {
+
+std::vector<Study> allCases() { return {driftingVortices()}; }
+
+}  // namespace smokebox
