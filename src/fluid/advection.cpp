@@ -161,7 +161,7 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     }
     return result;
   }
-  m.semiLagrangian.carry(boundary, u, v, dt, result.courant, m.extension.anySolid(), m.u1, m.v1);
+  m.semiLagrangian.carry(boundary, u, v, dt, m.extension.anySolid(), m.u1, m.v1);
   m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt);
   m.extension.apply(boundary, m.u1, m.v1);
   u.swap(m.u1);

@@ -20,9 +20,19 @@ namespace {
 /// The larger one; a NaN stays.
 double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
-double sideFlux(float open, float velocity, float wall) {
-  return static_cast<double>(open) * static_cast<double>(velocity) +
-         (1.0 - static_cast<double>(open)) * static_cast<double>(wall);
+// Half a chunk, in float64.
+constexpr int kHalf = 8;
+typedef float HalfChunk __attribute__((vector_size(4 * kHalf), aligned(4), may_alias));
+typedef double Doubles __attribute__((vector_size(8 * kHalf)));
+
+SMOKEBOX_INLINE Doubles doublesAt(const float* p) {
+  return __builtin_convertvector(*reinterpret_cast<const HalfChunk*>(p), Doubles);
+}
+
+/// Through faces that may be open in part.
+SMOKEBOX_INLINE Doubles sideFlux(const float* open, const float* velocity, const float* wall) {
+  const Doubles share = doublesAt(open);
+  return share * doublesAt(velocity) + (1.0 - share) * doublesAt(wall);
 }
 
 }  // namespace
@@ -73,7 +83,6 @@ PressureFlux::Largest PressureFlux::measure(const Boundary& boundary, const mult
     const std::uint8_t* kind = links.chunkRow(j);
     float* out = links.row(b, j);
     Lanes flux = {}, speed = {};
-    double generalFlux = 0, generalSpeed = 0;
     for (int c = 0; c < links.chunks; ++c) {
       const int first = c * kLanes;
       if (kind[c] & kRegular) {
@@ -87,30 +96,31 @@ PressureFlux::Largest PressureFlux::measure(const Boundary& boundary, const mult
         continue;
       }
       if (kind[c] & kEmpty) continue;
-      double net[kLanes] = {}, fastest[kLanes] = {};
-      const int count = std::min(kLanes, nx - first);
-      for (int k = 0; k < count; ++k) {
+      // The row may end within these 16 cells: what lies beyond has no links, and counts as 0.
+      alignas(64) float net[kLanes], right[kLanes];
+      for (int k = 0; k < kLanes; ++k) right[k] = wallU[first + k + 1];
+      if (links.periodicX && first + kLanes >= nx) right[nx - 1 - first] = wallU[0];
+      for (int k = 0; k < kLanes; k += kHalf) {
         const int i = first + k;
-        const float wallRight = links.periodicX && i + 1 == nx ? wallU[0] : wallU[i + 1];
-        const double sum = (sideFlux(ax[i], ur[i], wallU[i]) - sideFlux(ax[i + 1], ur[i + 1], wallRight)) +
-                           (sideFlux(ay[i], vr[i], wallV[i]) - sideFlux(ayAbove[i], va[i], wallVAbove[i]));
-        net[k] = id[i] > 0 ? sum : 0.0;
-        const double su = ax[i] > 0 ? std::fabs(static_cast<double>(ur[i])) : 0.0;
-        const double sv = ay[i] > 0 ? std::fabs(static_cast<double>(vr[i])) : 0.0;
-        fastest[k] = largerOf(su, sv);
-        out[i] = static_cast<float>(net[k]);
+        const Doubles sum =
+            (sideFlux(ax + i, ur + i, wallU + i) - sideFlux(ax + i + 1, ur + i + 1, right + k)) +
+            (sideFlux(ay + i, vr + i, wallV + i) - sideFlux(ayAbove + i, va + i, wallVAbove + i));
+        *reinterpret_cast<HalfChunk*>(net + k) = __builtin_convertvector(sum, HalfChunk);
       }
-      for (int k = 0; k < count; ++k) {
-        generalFlux = largerOf(std::fabs(net[k]), generalFlux);
-        generalSpeed = largerOf(fastest[k], generalSpeed);
-      }
+      const Lanes zero = {}, value = load(id + first) > zero ? load(net) : zero;
+      const Lanes left = load(ax + first) > zero ? load(ur + first) : zero,
+                  below = load(ay + first) > zero ? load(vr + first) : zero;
+      store(out + first, value);
+      flux = multigrid::larger(multigrid::magnitude(value), flux);
+      speed = multigrid::larger(multigrid::magnitude(left), speed);
+      speed = multigrid::larger(multigrid::magnitude(below), speed);
     }
-    if (ax[nx] > 0) generalSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), generalSpeed);
+    double sideSpeed = 0;
+    if (ax[nx] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), sideSpeed);
     if (j == ny - 1)
       for (int i = 0; i < nx; ++i)
-        if (ayAbove[i] > 0) generalSpeed = largerOf(std::fabs(static_cast<double>(va[i])), generalSpeed);
-    rows_[j] = {largerOf(multigrid::largestLane(flux), generalFlux),
-                largerOf(multigrid::largestLane(speed), generalSpeed)};
+        if (ayAbove[i] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(va[i])), sideSpeed);
+    rows_[j] = {multigrid::largestLane(flux), largerOf(multigrid::largestLane(speed), sideSpeed)};
   });
   Largest largest;
   for (const Largest& row : rows_) {

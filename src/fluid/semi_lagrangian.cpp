@@ -10,7 +10,7 @@ namespace smokebox {
 namespace {
 
 constexpr int kRowGrain = 8;
-constexpr int kTile = 64;   // faces of a row that are worked on together
+constexpr int kTile = 32;   // faces of a row that are worked on together
 constexpr int kBlock = 16;  // cells along a side of the blocks that are looked through for solids
 
 // The 4 samples of a row that an interpolation reads, or their weights.
@@ -61,7 +61,9 @@ inline Sample sampleAt(float size, float from, float shift, float offset) {
 
 /// The feet of the paths that lead to some faces of a row, as samples of the same component.
 struct Feet {
-  alignas(64) float column[kTile], row[kTile], shareX[kTile], shareY[kTile];
+  alignas(64) int at[kTile];                       // the sample below and to the left
+  alignas(64) float shareX[kTile], shareY[kTile];  // how far beyond it
+  float reachX = 0, reachY = 0;                    // no path is longer than this, cells
 };
 
 /// Paths far from solids, many at a time.
@@ -88,11 +90,25 @@ class OpenPaths {
   }
 
  private:
-  static float bilinear(const float* f, int stride, const Sample& x, const Sample& y) {
-    const int at = static_cast<int>(y.below) * stride + static_cast<int>(x.below);
-    const float a = x.share, b = y.share;
-    return (1 - b) * ((1 - a) * f[at] + a * f[at + 1]) +
-           b * ((1 - a) * f[at + stride] + a * f[at + stride + 1]);
+  /// Where samples are to be read: the first of four, and the shares of the others along x and y.
+  struct Places {
+    alignas(64) int at[kTile];
+    alignas(64) float a[kTile], b[kTile];
+  };
+  static void place(Places& places, int k, int stride, const Sample& x, const Sample& y) {
+    places.at[k] = static_cast<int>(y.below) * stride + static_cast<int>(x.below);
+    places.a[k] = x.share;
+    places.b[k] = y.share;
+  }
+  /// One by one: to gather in vectors takes twice as long.
+  static void bilinear(const Field& f, const Places& places, int count, float* out) {
+    const float* samples = f.row(0);
+    const std::ptrdiff_t stride = f.stride();
+    for (int k = 0; k < count; ++k) {
+      const float *p = samples + places.at[k], *q = p + stride;
+      const float a = places.a[k], b = places.b[k];
+      out[k] = (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * q[0] + a * q[1]);
+    }
   }
 
   /// (shiftX, shiftY): of the faces from the grid's nodes; vx, vy: velocity at the faces.
@@ -109,29 +125,43 @@ class OpenPaths {
   template <bool PeriodicX, bool PeriodicY>
   void find(int begin, int count, int j, float shiftX, float shiftY, const float* vx, const float* vy,
             Feet& feet) const {
-    const float *u = u_.row(0), *v = v_.row(0);
     const int stride = static_cast<int>(u_.stride());
     const float half = -0.5f * scale_, whole = -scale_;
     const auto row = static_cast<float>(j), sizeX = static_cast<float>(boundary_.grid.nx),
                sizeY = static_cast<float>(boundary_.grid.ny);
-#pragma omp simd
+    float reachX = 0, reachY = 0;
+    Places inU, inV;
+#pragma omp simd reduction(max : reachX, reachY)
     for (int k = 0; k < count; ++k) {
       const auto column = static_cast<float>(begin + k);
       const float dx = half * vx[k], dy = half * vy[k];
       // The samples of u are (0, 1/2) from the nodes, those of v (1/2, 0).
-      const Sample xu = sampleAt<PeriodicX>(sizeX, column, 0.0f, dx + shiftX),
-                   yu = sampleAt<PeriodicY>(sizeY, row, 0.5f, dy + (shiftY - 0.5f));
-      const float ux = bilinear(u, stride, xu, yu);
-      const Sample xv = sampleAt<PeriodicX>(sizeX, column, 0.5f, dx + (shiftX - 0.5f)),
-                   yv = sampleAt<PeriodicY>(sizeY, row, 0.0f, dy + shiftY);
-      const float uy = bilinear(v, stride, xv, yv);
-      const Sample x = sampleAt<PeriodicX>(sizeX, column, shiftX, whole * ux),
-                   y = sampleAt<PeriodicY>(sizeY, row, shiftY, whole * uy);
-      feet.column[k] = x.below;
-      feet.shareX[k] = x.share;
-      feet.row[k] = y.below;
-      feet.shareY[k] = y.share;
+      place(inU, k, stride, sampleAt<PeriodicX>(sizeX, column, 0.0f, dx + shiftX),
+            sampleAt<PeriodicY>(sizeY, row, 0.5f, dy + (shiftY - 0.5f)));
+      place(inV, k, stride, sampleAt<PeriodicX>(sizeX, column, 0.5f, dx + (shiftX - 0.5f)),
+            sampleAt<PeriodicY>(sizeY, row, 0.0f, dy + shiftY));
+      const float byX = std::fabs(dx), byY = std::fabs(dy);
+      reachX = byX > reachX ? byX : reachX;
+      reachY = byY > reachY ? byY : reachY;
     }
+    alignas(64) float ux[kTile], uy[kTile];
+    bilinear(u_, inU, count, ux);
+    bilinear(v_, inV, count, uy);
+#pragma omp simd reduction(max : reachX, reachY)
+    for (int k = 0; k < count; ++k) {
+      const auto column = static_cast<float>(begin + k);
+      const float dx = whole * ux[k], dy = whole * uy[k];
+      const Sample x = sampleAt<PeriodicX>(sizeX, column, shiftX, dx),
+                   y = sampleAt<PeriodicY>(sizeY, row, shiftY, dy);
+      feet.at[k] = static_cast<int>(y.below) * stride + static_cast<int>(x.below);
+      feet.shareX[k] = x.share;
+      feet.shareY[k] = y.share;
+      const float byX = std::fabs(dx), byY = std::fabs(dy);
+      reachX = byX > reachX ? byX : reachX;
+      reachY = byY > reachY ? byY : reachY;
+    }
+    feet.reachX = reachX;
+    feet.reachY = reachY;
   }
 
   const Field &u_, &v_;
@@ -145,9 +175,7 @@ void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, 
   const std::ptrdiff_t stride = f.stride();
   for (int k = 0; k < count; ++k) {
     if (!(open[k] > 0)) continue;
-    const float* p = samples + (static_cast<std::ptrdiff_t>(feet.row[k]) * stride +
-                                static_cast<std::ptrdiff_t>(feet.column[k]));
-    out[k] = limitedCubic(p, stride, feet.shareX[k], feet.shareY[k]);
+    out[k] = limitedCubic(samples + feet.at[k], stride, feet.shareX[k], feet.shareY[k]);
   }
 }
 
@@ -192,16 +220,18 @@ bool SemiLagrangian::anyShut(int i0, int i1, int j0, int j1) const {
   return table[b1 * row + a1] - table[b0 * row + a1] - table[b1 * row + a0] + table[b0 * row + a0] > 0;
 }
 
-void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field& v, double dt, double reach,
-                           bool anySolid, Field& outU, Field& outV) {
+void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field& v, double dt, bool anySolid,
+                           Field& outU, Field& outV) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const int columns = boundary.periodicX() ? nx : nx + 1, rows = boundary.periodicY() ? ny : ny + 1;
   if (anySolid && shutBlocks_.empty()) findShutBlocks(boundary);
-  const int cells = static_cast<int>(std::min(reach, 1e6)) + 2;  // one for rounding, one for what is read
-  // On a periodic grid a path may come in on the other side: then all of the grid is within reach.
-  auto nearSolid = [&](int begin, int count, int j) {
+  // Whether a solid is where these paths have been. What is not a number counts as far.
+  auto nearSolid = [&](int begin, int count, int j, const Feet& feet) {
     if (!anySolid) return false;
-    int i0 = begin - cells, i1 = begin + count + cells, j0 = j - cells, j1 = j + cells;
+    const auto cells = [](float reach) { return reach < 1e6f ? static_cast<int>(reach) + 2 : 1000000; };
+    int i0 = begin - cells(feet.reachX), i1 = begin + count + cells(feet.reachX);
+    int j0 = j - cells(feet.reachY), j1 = j + cells(feet.reachY);
+    // On a periodic grid a path may come in on the other side: then all of the grid is within reach.
     if (boundary.periodicX() && (i0 < 0 || i1 > nx)) i0 = 0, i1 = nx;
     if (boundary.periodicY() && (j0 < 0 || j1 > ny)) j0 = 0, j1 = ny;
     return anyShut(i0, i1, j0, j1);
@@ -213,8 +243,8 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
     for (int j = begin; j < end; ++j) {
       for (int x0 = 0; j < ny && x0 < columns; x0 += kTile) {
         const int count = std::min(kTile, columns - x0);
-        if (!nearSolid(x0, count, j)) {
-          open.feetOfU(x0, count, j, feet);
+        open.feetOfU(x0, count, j, feet);
+        if (!nearSolid(x0, count, j, feet)) {
           takeAtFeet(u, feet, boundary.openX.row(j) + x0, count, outU.row(j) + x0);
           continue;
         }
@@ -226,8 +256,8 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
       }
       for (int x0 = 0; x0 < nx; x0 += kTile) {
         const int count = std::min(kTile, nx - x0);
-        if (!nearSolid(x0, count, j)) {
-          open.feetOfV(x0, count, j, feet);
+        open.feetOfV(x0, count, j, feet);
+        if (!nearSolid(x0, count, j, feet)) {
           takeAtFeet(v, feet, boundary.openY.row(j) + x0, count, outV.row(j) + x0);
           continue;
         }

@@ -17,10 +17,9 @@ class SemiLagrangian {
   /// Needed when boundary.version has changed.
   void rebuild() { shutBlocks_.clear(); }
 
-  /// u, v must have been extended; `reach`: no path is longer along x or y, in cells. Writes all open faces
-  /// of outU and outV (and those repeated by a period).
-  void carry(const Boundary& boundary, const Field& u, const Field& v, double dt, double reach, bool anySolid,
-             Field& outU, Field& outV);
+  /// u, v must have been extended. Writes all open faces of outU and outV (and those repeated by a period).
+  void carry(const Boundary& boundary, const Field& u, const Field& v, double dt, bool anySolid, Field& outU,
+             Field& outV);
 
   std::size_t bytes() const { return shutBlocks_.size() * sizeof(int); }
 
