@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "fluid/advection_kernel.h"
 #include "fluid/advection_near.h"
@@ -30,7 +31,8 @@ struct Advection::Impl {
         u1(boundary.grid.nx, boundary.grid.ny),
         v1(boundary.grid.nx, boundary.grid.ny),
         u2(boundary.grid.nx, boundary.grid.ny),
-        v2(boundary.grid.nx, boundary.grid.ny) {
+        v2(boundary.grid.nx, boundary.grid.ny),
+        beyond(boundary.grid.nx, 0.0f) {
     near.rebuild(boundary, extension, pool);
   }
 
@@ -88,7 +90,6 @@ struct Advection::Impl {
         for (int i = begin; i < end; ++i) q[i] += open[i] > 0 ? behind[i] - ahead[i] : 0.0f;
       }
     };
-    const std::vector<float> beyond(nx, 0.0f);
     pool.blocks(0, wrapY ? ny : ny + 1, kRowGrain, [&](int begin, int end) {
       for (int j = begin; j < end; ++j) {
         const float *rowU = accelerationU ? accelerationU->row(j) : nullptr,
@@ -130,7 +131,8 @@ struct Advection::Impl {
   VelocityExtension extension;
   NearFaces near;
   SemiLagrangian semiLagrangian;
-  Field u1, v1, u2, v2;  // after the first and the second stage
+  Field u1, v1, u2, v2;       // after the first and the second stage
+  std::vector<float> beyond;  // a row of zeros: phi outside
 };
 
 Advection::Advection(const Boundary& boundary, ThreadPool& pool)

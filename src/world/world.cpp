@@ -28,6 +28,7 @@ World::World(const SceneDocument& document, const Options& options)
       probes_(spec_.probes, kOutlineTolerance * spec_.domain.grid.h) {
   boundary_.grid = spec_.domain.grid;
   if (needs_.fluid) buildFluid();
+  stepMs_.reserve(std::min(spec_.time.steps + 1, 1L << 20));
   if (options_.figures) recordFigures();
 }
 

@@ -1,0 +1,72 @@
+// No step allocates once the first ones have found their sizes. Counted by this program's own operator new.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include "world/world.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto unit = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace smokebox {
+namespace {
+
+/// In 20 steps after the first 20.
+long allocationsInSteps(const std::string& scene, int threads) {
+  World world(SceneDocument::parse(scene, "scene.yaml"), {.threads = threads});
+  for (int k = 0; k < 20; ++k) world.step();
+  const long before = allocations;
+  for (int k = 0; k < 20; ++k) world.step();
+  return allocations - before;
+}
+
+std::string wind(const std::string& timeStep) {
+  return R"yaml(domain: {size: [2, 1], resolution: 64}
+walls: {left: {inflow: [1, 0]}, right: open}
+output: {fps: 1}
+fluid: {vorticity: 0.3, velocity: ["1", "0.2*sin(pi*x)"]}
+solids: [{name: disk, shape: {circle: {radius: 0.1}}, position: [0.5, 0.5]}]
+time: {duration: 100, step: )yaml" +
+         timeStep + "}\n";
+}
+
+TEST(Allocation, AStepOfTheVelocityDoesWithout) {
+  // Truth: none, for one thread and two, in short steps, sub-steps and huge ones.
+  for (const char* timeStep : {"1/100", "1/20", "1/5"})
+    for (const int threads : {1, 2}) EXPECT_EQ(allocationsInSteps(wind(timeStep), threads), 0) << timeStep;
+}
+
+TEST(Allocation, ViscosityDoesWithout) {
+  // Truth: none in a viscous channel.
+  const std::string channel = R"(domain: {size: [2, 1], resolution: 64}
+walls: {left: {inflow: [1, 0]}, right: open, bottom: no-slip, top: no-slip}
+time: {duration: 100, step: 1/60}
+output: {fps: 1}
+fluid: {viscosity: 1e-3}
+solids: [{name: disk, shape: {circle: {radius: 0.1}}, position: [0.5, 0.5]}]
+)";
+  EXPECT_EQ(allocationsInSteps(channel, 1), 0);
+}
+
+}  // namespace
+}  // namespace smokebox
