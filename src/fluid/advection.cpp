@@ -109,8 +109,11 @@ struct Advection::Impl {
     });
   }
 
-  /// Largest |u|+|v| over the cells, each component from the faster of the cell's two faces.
-  double largestSpeed(const Boundary& boundary, const Field& u, const Field& v) {
+  /// Largest |u|+|v| over the cells, each component from the faster of the cell's two faces. If the fluid is
+  /// pushed, also of what forces and the lagged pressure make of it within half the step, which is what the
+  /// last stage is carried by: a step that starts at rest may be a huge one.
+  double largestSpeed(const Boundary& boundary, const Field& u, const Field& v, const Field& phi,
+                      const Field* accelerationU, const Field* accelerationV, double dt) {
     const int nx = boundary.grid.nx;
     return pool.max(0, boundary.grid.ny, kRowGrain, 0, [&](int begin, int end) {
       float largest = 0;
@@ -121,6 +124,18 @@ struct Advection::Impl {
           const float x = std::max(std::fabs(a[i]), std::fabs(a[i + 1]));
           const float y = std::max(std::fabs(b[i]), std::fabs(c[i]));
           largest = std::max(largest, x + y);
+        }
+        if (!accelerationU || j == 0) continue;
+        const float *pushU = accelerationU->row(j), *pushV = accelerationV->row(j);
+        const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
+        const float *here = phi.row(j), *below = phi.row(j - 1);
+        const auto half = static_cast<float>(0.5 * dt);
+#pragma omp simd reduction(max : largest)
+        for (int i = 1; i < nx; ++i) {
+          const float x = a[i] + (half * pushU[i] - 0.5f * (here[i] - here[i - 1]));
+          const float y = b[i] + (half * pushV[i] - 0.5f * (here[i] - below[i]));
+          const float fast = (openX[i] > 0 ? std::fabs(x) : 0.0f) + (openY[i] > 0 ? std::fabs(y) : 0.0f);
+          largest = std::max(largest, fast);
         }
       }
       return static_cast<double>(largest);
@@ -152,7 +167,8 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
   Impl& m = *impl_;
   m.extension.apply(boundary, u, v);
   Result result;
-  result.courant = m.largestSpeed(boundary, u, v) * dt / boundary.grid.h;
+  result.courant =
+      m.largestSpeed(boundary, u, v, phi, accelerationU, accelerationV, dt) * dt / boundary.grid.h;
   if (result.courant <= kMostSubSteps * kLargestCourant) {
     result.subSteps = std::max(1, static_cast<int>(std::ceil(result.courant / kLargestCourant)));
     const double share = 1.0 / result.subSteps;

@@ -1,5 +1,7 @@
 #include "fluid/fluid.h"
 
+#include <algorithm>
+
 namespace smokebox {
 
 Fluid::Fluid(const Boundary& boundary, const Parts& parts, ThreadPool& pool)
@@ -30,13 +32,19 @@ void Fluid::boundaryChanged(const Boundary& boundary) {
 void Fluid::prepareUncovering(const Boundary& before) { advection_.extend(before, u_, v_); }
 
 void Fluid::beginForces() {
-  if (parts_.viscous) {
-    accelerationU_ = viscousU_;
-    accelerationV_ = viscousV_;
-  } else {
-    accelerationU_.fill(0);
-    accelerationV_.fill(0);
-  }
+  constexpr int kRows = 32;
+  const int nx = u_.nx();
+  pool_.blocks(0, u_.ny() + 1, kRows, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      if (parts_.viscous) {
+        std::copy_n(viscousU_.row(j), nx + 1, accelerationU_.row(j));
+        std::copy_n(viscousV_.row(j), nx + 1, accelerationV_.row(j));
+      } else {
+        std::fill_n(accelerationU_.row(j), nx + 1, 0.0f);
+        std::fill_n(accelerationV_.row(j), nx + 1, 0.0f);
+      }
+    }
+  });
 }
 
 void Fluid::addConfinement(const Boundary& boundary, double strength, double length) {
