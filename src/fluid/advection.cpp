@@ -125,8 +125,9 @@ struct Advection::Impl {
           const float y = std::max(std::fabs(b[i]), std::fabs(c[i]));
           largest = std::max(largest, x + y);
         }
-        if (!accelerationU || j == 0) continue;
-        const float *pushU = accelerationU->row(j), *pushV = accelerationV->row(j);
+        if ((!accelerationU && !accelerationV) || j == 0) continue;
+        const float *pushU = accelerationU ? accelerationU->row(j) : beyond.data(),
+                    *pushV = accelerationV ? accelerationV->row(j) : beyond.data();
         const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
         const float *here = phi.row(j), *below = phi.row(j - 1);
         const auto half = static_cast<float>(0.5 * dt);

@@ -147,9 +147,8 @@ void Multigrid::balance(multigrid::Floats& values) const {
   }
 }
 
-bool Multigrid::fused(const Level& level) const {
-  const bool small = static_cast<long>(level.nx) * level.ny < (1 << 15);
-  return (pool_.threads() == 1 || small) && !level.periodicY;
+bool Multigrid::shared(const Level& level) const {
+  return pool_.threads() > 1 && static_cast<long>(level.nx) * level.ny >= (1 << 15);
 }
 
 template <class Body>
@@ -160,53 +159,64 @@ void Multigrid::rows(const Level& level, int first, int last, Body&& body) {
   forRows(pool_, serial ? 0 : static_cast<long>(level.nx) * level.ny, first, last, body);
 }
 
+template <class Stage>
+void Multigrid::inOrder(Level& level, int stages, Stage&& stage) {
+  const int ny = level.ny;
+  if (level.periodicY) {
+    for (int s = 0; s < stages; ++s) {
+      rows(level, 0, ny, [&](int j) { stage(s, j); });
+      level.wrapRows(level.x);
+    }
+    return;
+  }
+  // Rows of a band that a stage can do without its neighbours' last ones.
+  const auto band = [&](int low, int high, bool atBottom, bool atTop) {
+    for (int t = low; t < high + stages; ++t)
+      for (int s = 0; s < stages; ++s) {
+        const int j = t - s;
+        if (j >= low + (atBottom ? 0 : s) && j < high - (atTop ? 0 : s)) stage(s, j);
+      }
+  };
+  constexpr int kFewestRows = 32, kBandsAThread = 4;
+  const int count = std::min(kBandsAThread * pool_.threads(), ny / kFewestRows);
+  if (!shared(level) || count < 2) return band(0, ny, true, true);
+  const auto border = [&](int k) { return static_cast<int>(static_cast<long>(ny) * k / count); };
+  pool_.blocks(0, count, 1, [&](int k, int) { band(border(k), border(k + 1), k == 0, k == count - 1); });
+  pool_.blocks(1, count, 1, [&](int k, int) {
+    for (int s = 1; s < stages; ++s)
+      for (int j = border(k) - s; j < border(k) + s; ++j) stage(s, j);
+  });
+}
+
 void Multigrid::descend(std::size_t l) {
   Level& level = levels_[l];
   Level* coarse = l + 1 < levels_.size() ? &levels_[l + 1] : nullptr;
   const int ny = level.ny;
-  if (!fused(level)) {
-    for (int s = 0; s < kSweeps; ++s) {
-      rows(level, 0, ny, [&](int j) { sweepDown(level, s, j); });
-      level.wrapRows(level.x);
+  const bool whole = shared(level) || level.periodicY;  // all rows of the residual are kept
+  inOrder(level, coarse ? kSweeps + 1 : kSweeps, [&](int s, int j) {
+    if (s < kSweeps) {
+      sweepDown(level, s, j);
+      return;
     }
-    if (!coarse) return;
-    rows(level, 0, ny, [&](int j) { residualOfRow(level, j); });
-    rows(level, 0, coarse->ny, [&](int J) { restrictRow(level, *coarse, J, zeroRow_.data()); });
-    return;
-  }
-  for (int t = 0; t < ny + kSweeps; ++t) {
-    for (int s = 0; s < kSweeps; ++s)
-      if (t - s >= 0 && t - s < ny) sweepDown(level, s, t - s);
-    const int j = t - kSweeps;
-    if (j < 0 || !coarse) continue;
     residualOfRow(level, j);
-    if (j % 2 == 1 || j == ny - 1) restrictRow(level, *coarse, j / 2, zeroRow_.data());
-  }
+    if (!whole && (j % 2 == 1 || j == ny - 1)) restrictRow(level, *coarse, j / 2, zeroRow_.data());
+  });
+  if (coarse && whole)
+    rows(level, 0, coarse->ny, [&](int J) { restrictRow(level, *coarse, J, zeroRow_.data()); });
 }
 
 void Multigrid::ascend(std::size_t l) {
   Level& level = levels_[l];
   const Level& coarse = levels_[l + 1];
-  const int ny = level.ny;
   const bool finest = l == 0;
-  if (!fused(level)) {
-    rows(level, 0, ny, [&](int j) { prolongRow(level, coarse, j); });
-    level.wrapRows(level.x);
-    for (int s = 0; s < kSweeps; ++s) {
-      rows(level, 0, ny, [&](int j) { sweepUp(level, s, j); });
-      level.wrapRows(level.x);
-    }
-    if (finest) rows(level, 0, ny, [&](int j) { rowSums_[j] = dotOfRow(level, j); });
-    return;
-  }
-  for (int t = 0; t < ny + kSweeps; ++t) {
-    if (t < ny) prolongRow(level, coarse, t);
-    for (int s = 0; s < kSweeps; ++s) {
-      const int j = t - 1 - s;
-      if (j >= 0 && j < ny) sweepUp(level, s, j);
-    }
-    if (finest && t >= kSweeps) rowSums_[t - kSweeps] = dotOfRow(level, t - kSweeps);
-  }
+  inOrder(level, finest ? kSweeps + 2 : kSweeps + 1, [&](int s, int j) {
+    if (s == 0)
+      prolongRow(level, coarse, j);
+    else if (s <= kSweeps)
+      sweepUp(level, s - 1, j);
+    else
+      rowSums_[j] = dotOfRow(level, j);
+  });
 }
 
 double Multigrid::cycle() {

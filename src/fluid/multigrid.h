@@ -7,8 +7,10 @@
 // coarsened down to one block. Cells without an open face, and regions without an open side at the coarsest
 // level, get 0 from there: b must add up to 0 over each sealed region.
 //
-// On one thread all sweeps of a level run in one pass over its rows, each row as soon as its neighbours are
-// ready; on several threads one pass for each sweep. The results are the same to the bit.
+// All sweeps of a level run in one pass over its rows, each row as soon as its neighbours are ready; several
+// threads do so in bands of rows, each sweep a row further from the border than the last, and then what is
+// missing at the borders. Rows that are periodic: one pass for each sweep. The results are the same to the
+// bit.
 #pragma once
 #include <vector>
 
@@ -41,7 +43,12 @@ class Multigrid {
   void balance(multigrid::Floats& values) const;
   void descend(std::size_t l);
   void ascend(std::size_t l);
-  bool fused(const multigrid::Level& level) const;
+  /// Large enough to be spread over several threads.
+  bool shared(const multigrid::Level& level) const;
+  /// Calls stage(s, j), s from 0 to `stages` - 1, for all rows, each after stage s - 1 of the rows beside it
+  /// and before stage s + 1 of them.
+  template <class Stage>
+  void inOrder(multigrid::Level& level, int stages, Stage&& stage);
   template <class Body>
   void rows(const multigrid::Level& level, int first, int last, Body&& body);
 
