@@ -75,6 +75,7 @@ void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {
 #pragma omp simd
     for (int i = 0; i <= nx; ++i) acceleration[i] = perStep * (q[i] - acceleration[i]);
   };
+  viscosity_->bendAtWalls(boundary, u_, v_);
   pool_.blocks(0, ny + 1, kRows, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       takeOut(u_.row(j), viscousU_.row(j));

@@ -30,6 +30,8 @@ struct System {
       toAbove;  // weight of the link to the next face along x and y: 1 or 0; toRight(-1), toAbove(., -1) wrap
   Field wallWeight;                   // sum of the cut links' weights
   std::vector<float> linkWeight;      // of each of the boundary's links
+  std::vector<int> bent;              // links to a wall of the domain along the velocity: see bendAtWalls()
+  std::vector<float> bend;            // what each of them adds to the Laplacian, times h^2
   Field unknown;                      // 1 on open faces, 0 elsewhere
   int chunks = 0;                     // in a row
   std::vector<std::uint8_t> regular;  // by row and chunk: all links are 1 and none is cut
@@ -53,6 +55,7 @@ struct Viscosity::Impl {
 
   void rebuild(const Boundary& boundary, System& s);
   void findRegular(System& s);
+  void bendAtWalls(const Boundary& boundary, System& s, const Field& x);
   Result solve(const Boundary& boundary, const System& s, Field& x, double c);
   Result solveByGradients(const Boundary& boundary, const System& s, Field& x, double c);
   Result solveByChebyshev(const System& s, Field& x, double c, double largest);
@@ -188,19 +191,34 @@ void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
   // them).
   const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
   s.linkWeight.assign(links.size(), 0.0f);
+  s.bent.clear();
   for (std::size_t k = 0; k < links.size(); ++k) {
     const CutLink& link = links[k];
     if (link.i >= s.columns || link.j >= s.rows || !(open(link.i, link.j) > 0)) continue;
     s.linkWeight[k] = linkWeightOf(link);
     s.wallWeight(link.i, link.j) += s.linkWeight[k];
+    const bool along = s.alongX ? link.dj != 0 : link.di != 0;
+    if (link.solid < 0 && along && isOpen(link.i - link.di, link.j - link.dj))
+      s.bent.push_back(static_cast<int>(k));
     int i = link.di < 0 ? link.i - 1 : link.i, j = link.dj < 0 ? link.j - 1 : link.j;
     if (i < 0) i += wrapX ? s.columns : 0;
     if (j < 0) j += wrapY ? s.rows : 0;
     (link.di != 0 ? s.toRight : s.toAbove)(i, j) = 0;
   }
+  s.bend.assign(s.bent.size(), 0.0f);
   wrap(s, s.toRight);
   wrap(s, s.toAbove);
   findRegular(s);
+}
+
+void Viscosity::Impl::bendAtWalls(const Boundary& boundary, System& s, const Field& x) {
+  const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
+  for (std::size_t n = 0; n < s.bent.size(); ++n) {
+    const CutLink& link = links[s.bent[n]];
+    const float here = x(link.i, link.j), next = x(link.i - link.di, link.j - link.dj);
+    const float second = (link.velocity - here) / link.theta + (next - here);
+    s.bend[n] = (1 - link.theta) / (1 + link.theta) * second;
+  }
 }
 
 void Viscosity::Impl::findRegular(System& s) {
@@ -232,6 +250,8 @@ float Viscosity::Impl::addWalls(const Boundary& boundary, const System& s, float
     right(links[k].i, links[k].j) += c * s.linkWeight[k] * links[k].velocity;
     largest = std::max(largest, std::fabs(links[k].velocity));
   }
+  for (std::size_t n = 0; n < s.bent.size(); ++n)
+    right(links[s.bent[n]].i, links[s.bent[n]].j) += c * s.bend[n];
   return largest;
 }
 
@@ -404,6 +424,11 @@ Viscosity::~Viscosity() = default;
 void Viscosity::rebuild(const Boundary& boundary) {
   impl_->rebuild(boundary, impl_->systemU);
   impl_->rebuild(boundary, impl_->systemV);
+}
+
+void Viscosity::bendAtWalls(const Boundary& boundary, const Field& u, const Field& v) {
+  impl_->bendAtWalls(boundary, impl_->systemU, u);
+  impl_->bendAtWalls(boundary, impl_->systemV, v);
 }
 
 Viscosity::Result Viscosity::diffuse(const Boundary& boundary, Field& u, Field& v, double viscosity,

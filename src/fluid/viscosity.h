@@ -18,6 +18,10 @@ class Viscosity {
   Viscosity(const Boundary& boundary, ThreadPool& pool);
   ~Viscosity();
   void rebuild(const Boundary& boundary);
+  /// Beside a wall of the domain the second difference of a link of half a cell and one of a whole cell is
+  /// 3/4 of the second derivative. What is missing is taken from u and v here, and added by diffuse() to its
+  /// right side: the matrix stays symmetric.
+  void bendAtWalls(const Boundary& boundary, const Field& u, const Field& v);
   /// (1 - dt nu Laplacian) u_new = u; `viscosity` nu is kinematic, m^2/s.
   Result diffuse(const Boundary& boundary, Field& u, Field& v, double viscosity, double dt);
   std::size_t bytes() const;

@@ -2,6 +2,11 @@
 
 namespace smokebox {
 
-std::vector<Study> allCases() { return {driftingVortices()}; }
+std::vector<Study> allCases() {
+  std::vector<Study> all = {driftingVortices(), vortexPair()};
+  for (const std::vector<Study>& family : {lidDrivenCavities(), mirrorImages(), fluidsAtRest()})
+    all.insert(all.end(), family.begin(), family.end());
+  return all;
+}
 
 }  // namespace smokebox

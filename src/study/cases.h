@@ -1,10 +1,14 @@
-// One function a case, in a file of its own or with its like; allCases() lists them.
+// One function a case, or a family of them, in a file of its own; allCases() lists them.
 #pragma once
 #include "study/study.h"
 
 namespace smokebox {
 
 Study driftingVortices();
+Study vortexPair();
+std::vector<Study> lidDrivenCavities();
+std::vector<Study> mirrorImages();
+std::vector<Study> fluidsAtRest();
 
 std::vector<Study> allCases();
 
