@@ -127,13 +127,14 @@ INSTANTIATE_TEST_SUITE_P(Sensitivity, Text, testing::ValuesIn(rowsWith(hasText))
 
 // --- ranges
 
-bool isField(const LayerSpec& layer) {
+bool showsField(const LayerSpec& layer) {
+  if (!layer.shown) return false;
   return layer.kind == LayerKind::pressure || layer.kind == LayerKind::vorticity ||
          layer.kind == LayerKind::speed;
 }
 
 bool hasField(const SceneSpec& spec) {
-  return std::any_of(spec.view.layers.begin(), spec.view.layers.end(), isField);
+  return std::any_of(spec.view.layers.begin(), spec.view.layers.end(), showsField);
 }
 
 std::array<double, 2> rangeOf(const FilmRanges& ranges, LayerKind kind) {
@@ -151,7 +152,7 @@ TEST_P(Range, OffByTwoPercentIsSeen) {
   const SceneDocument document = row.document();
   const FilmRanges ranges = findRanges(document, 1);
   for (const LayerSpec& layer : document.spec().view.layers) {
-    if (!isField(layer)) continue;
+    if (!showsField(layer)) continue;
     const std::string path = std::string("view.layers.") + layerName(layer.kind);
     const std::array<double, 2> range = rangeOf(ranges, layer.kind);
     const auto drawn = [&](double factor, bool bar) {
