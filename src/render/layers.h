@@ -164,6 +164,7 @@ class TextLayer {
   int lineHeight_ = 0, ascent_ = 0, descent_ = 0;
   std::string keptTime_;
   Mask timeMask_;
+  int timeWidth_ = 0;
 };
 
 /// Points and regions that are measured, with their names.

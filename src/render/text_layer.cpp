@@ -123,16 +123,23 @@ void TextLayer::drawCaptions(const Snapshot& snapshot, const LayerSpec& layer, c
 void TextLayer::drawTime(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
   char text[48];
   std::snprintf(text, sizeof text, "t = %.2f s", snapshot.time);
+  const int size = fontSize(frame, kTimeUnits);
+  const int padX = std::max(2, size * 5 / 10), padY = std::max(1, size * 3 / 10);
+  const int margin = std::max(2, static_cast<int>(std::lround(18 * frame.unit)));
+  const int ascent = static_cast<int>(std::lround(0.76 * size)),
+            descent = static_cast<int>(std::lround(0.24 * size));
   if (keptTime_ != text) {
     keptTime_ = text;
-    const int size = fontSize(frame, kTimeUnits);
-    const int margin = std::max(2, static_cast<int>(std::lround(24 * frame.unit)));
-    timeMask_ = haloedText(palette_.text, keptTime_, size, FontWeight::regular, margin,
-                           margin + static_cast<int>(std::lround(0.76 * size)), std::max(1, size / 7),
-                           frame.width, frame.height);
+    timeWidth_ = palette_.text.advance(keptTime_, size);  // digits have one width: the plate does not twitch
+    timeMask_ = haloedText(palette_.text, keptTime_, size, FontWeight::regular, margin + padX,
+                           margin + padY + ascent, std::max(1, size / 9), frame.width, frame.height);
   }
   const TextColors colors = textColors(layer, frame.darkGround);
-  palette_.sprites.add(timeMask_, linear(colors.halo, 0.6 * layer.opacity),
+  palette_.panels.add(margin, margin, margin + timeWidth_ + 2 * padX, margin + ascent + descent + 2 * padY,
+                      linear(colors.halo, (frame.darkGround ? kDarkPlate : kLightPlate) * layer.opacity), {},
+                      0.3 * size);
+  palette_.panels.flush();
+  palette_.sprites.add(timeMask_, linear(colors.halo, 0.35 * layer.opacity),
                        linear(colors.letters, layer.opacity));
   palette_.sprites.flush();
 }
