@@ -30,6 +30,7 @@ void setShares(GridCover& cover, Boundary& boundary) {
   boundary.openX.swap(cover.openX);
   boundary.openY.swap(cover.openY);
   boundary.volume.swap(cover.volume);
+  std::swap(boundary.regions, cover.regions);
   closeSide(boundary, Side::left, boundary.openX);
   closeSide(boundary, Side::right, boundary.openX);
   closeSide(boundary, Side::bottom, boundary.openY);

@@ -12,6 +12,7 @@
 
 #include "base/field.h"
 #include "geometry/grid.h"
+#include "geometry/region_map.h"
 #include "geometry/walls.h"
 
 namespace smokebox {
@@ -41,6 +42,7 @@ struct Boundary {
   Field volume;        // open share of each cell's area, 0..1
   Field wallU, wallV;  // velocity of what closes the face, along its normal; 0 where a face is fully open
   std::vector<CutLink> linksU, linksV;  // sorted by j, then i; the walls' too
+  RegionMap regions;                    // of the open cells; empty: not told apart
   std::uint64_t version = 0;            // grows whenever a fraction changes (velocities may change without)
 
   static constexpr float kSmallestOpening = 1e-3f;

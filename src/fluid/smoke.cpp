@@ -30,10 +30,11 @@ struct Channel {
   double emitted = 0, left = 0;  // in cell areas
 };
 
-// Smoke of a cell that closed with no open cell in reach.
+// Smoke of a cell that closed with no open cell of its region in reach.
 struct Trapped {
   int channel, cell;
   double mass;
+  int region;  // -1: not told apart, or vanished
 };
 
 }  // namespace
@@ -105,6 +106,7 @@ void Smoke::Impl::makeRoom(int channel, float highest) {
   if (needed <= c.quantum.size) return;
   setQuantum(c, needed);
   double carried = 0;
+  int place = 0;
   for (int j = 0; j < c.mass.ny(); ++j) {
     float* m = c.mass.row(j);
     for (int i = 0; i < c.mass.nx(); ++i) {
@@ -113,9 +115,12 @@ void Smoke::Impl::makeRoom(int channel, float highest) {
       m[i] = static_cast<float>(std::floor(exact / needed + 0.5) * needed);
       if (m[i] < 0) m[i] = 0;
       carried = exact - m[i];
+      place = volumes.cells().cell(i, j);
     }
   }
-  if (carried != 0) trapped.push_back({channel, 0, carried});
+  const SmokeCells& cells = volumes.cells();
+  if (carried != 0)
+    trapped.push_back({channel, place, carried, volumes.regionsBefore().at(cells.i(place), cells.j(place))});
 }
 
 // What goes from cell to cell.
@@ -131,7 +136,9 @@ void Smoke::Impl::move(int channel, const std::vector<SmokeTransfer>& transfers)
     if (!(moved > 0)) continue;
     from -= moved;
     if (t.to < 0) {
-      trapped.push_back({channel, t.from, moved});
+      const int region = volumes.regionsBefore().at(cells.i(t.from), cells.j(t.from));
+      trapped.push_back(
+          {channel, t.from, moved, volumes.match().apart() ? volumes.match().heir(region) : -1});
       continue;
     }
     c.mass(cells.i(t.to), cells.j(t.to)) += moved;
@@ -145,7 +152,8 @@ void Smoke::Impl::release(const Boundary& b) {
   for (Trapped& t : trapped) {
     Channel& c = channels[t.channel];
     if (!(t.mass >= c.quantum.size) || c.quantum.size == 0) continue;
-    const int to = volumes.plan().nearestOpen(cells, b.volume, t.cell);
+    const int to =
+        volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions}, t.cell, t.region);
     if (to < 0) continue;
     const float moved = static_cast<float>(std::floor(t.mass * c.quantum.inverse) * c.quantum.size);
     c.mass(cells.i(to), cells.j(to)) += moved;
@@ -336,6 +344,9 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
   const SmokeCells& cells = volumes.cells();
   for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest * volumes.mostCarried());
 
+  if (volumes.moved())
+    for (Trapped& t : s.trapped)
+      t.region = t.region >= 0 && volumes.match().apart() ? volumes.match().heir(t.region) : -1;
   Field& start = volumes.start();
   for (int k = 0; k < channels(); ++k) {
     Channel& c = s.channels[k];

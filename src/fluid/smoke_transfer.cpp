@@ -21,6 +21,10 @@ float openOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c, int 
   return cells.atFace(*geometry.openX, *geometry.openY, c, face);
 }
 
+int regionOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c) {
+  return geometry.regions ? geometry.regions->at(cells.i(c), cells.j(c)) : -1;
+}
+
 // Cells by their place in the window around one, of which some are never cut and so keep their side.
 struct Window {
   static constexpr int kSize = 2 * kWindow + 1;
@@ -91,12 +95,15 @@ void TransferPlan::search(const SmokeCells& cells, int from, const SmokeGeometry
   found_.erase(found_.begin());
 }
 
-int TransferPlan::nearestOpen(const SmokeCells& cells, const Field& volume, int from) {
+int TransferPlan::nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region) {
   reserve(cells);
-  if (volume(cells.i(from), cells.j(from)) > 0) return from;
+  auto fits = [&](int c) {
+    return volumeOf(cells, geometry, c) > 0 && (region < 0 || regionOf(cells, geometry, c) == region);
+  };
+  if (fits(from)) return from;
   search(cells, from, nullptr, kReachOfClosed);
   for (int cell : found_)
-    if (volume(cells.i(cell), cells.j(cell)) > 0) return cell;
+    if (fits(cell)) return cell;
   return -1;
 }
 
@@ -133,8 +140,9 @@ bool TransferPlan::passed(const SmokeCells& cells, int c, const SmokeGeometry& b
   return old.anchors && now.anchors ? (old.anchors & now.anchors) == 0 : !both;
 }
 
-void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-                            const SmokeGeometry& after, Field& courantX, Field& courantY, Field& carried) {
+void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut, const RegionMatch& match,
+                            const SmokeGeometry& before, const SmokeGeometry& after, Field& courantX,
+                            Field& courantY, Field& carried) {
   reserve(cells);
   handed_.clear();
   for (int c : cut) {
@@ -143,13 +151,20 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
     content_[c] = volumeOf(cells, before, c) > 0 ? carried(cells.i(c), cells.j(c)) : 0.0f;
     excess_[c] = content_[c] - net - volumeOf(cells, after, c);
     const bool stays = volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) > 0;
-    passed_[c] = stays && passed(cells, c, before, after);
+    passed_[c] =
+        stays &&
+        ((match.apart() && !match.continues(regionOf(cells, before, c), regionOf(cells, after, c))) ||
+         passed(cells, c, before, after));
   }
 
   for (int c : cut) {
     const bool closes = volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) <= 0;
     if (!closes && !passed_[c]) continue;
-    auto takes = [&](int other) { return volumeOf(cells, after, other) > 0 && !passed_[other]; };
+    const int region = match.apart() ? regionOf(cells, before, c) : -1;
+    auto takes = [&](int other) {
+      return volumeOf(cells, after, other) > 0 && !passed_[other] &&
+             (region < 0 || match.continues(region, regionOf(cells, after, other)));
+    };
     int nearest = -1;
     for (int reach : kReachOfPairs) {
       search(cells, c, &before, reach);
@@ -162,14 +177,17 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
       }
       if (content_[c] <= kTolerance && nearest >= 0) break;
     }
-    if (nearest < 0) {
-      search(cells, c, &before, kReachOfClosed);
+    // Then whatever lies between, if it is told apart what is on which side.
+    for (const SmokeGeometry* through : {&before, static_cast<const SmokeGeometry*>(nullptr)}) {
+      if (nearest >= 0 || (!through && region < 0)) break;
+      search(cells, c, through, kReachOfClosed);
       for (int other : found_)
         if (nearest < 0 && takes(other)) nearest = other;
     }
     if (nearest < 0) {
-      if (passed_[c]) continue;
-      nearest = nearestOpen(cells, *after.volume, c);
+      const int heir = region < 0 ? -1 : match.heir(region);
+      if (passed_[c] && (region < 0 || match.continues(region, regionOf(cells, after, c)))) continue;
+      if (heir < 0) nearest = nearestOpen(cells, after, c, -1);  // of a region that has vanished
     }
     // The rest, be it none: what is left of the smoke must not stay.
     give(c, nearest, std::max(content_[c], 0.0f), true);

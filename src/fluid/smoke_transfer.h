@@ -4,17 +4,20 @@
 // It follows the open share of the cell, but not exactly, since fluxes are those of one moment and the solid
 // moves on through the step. Before the sweeps a cell that closes hands all it has to cells that it was
 // connected with, and so does one that a thin wall has passed (the part of it that counts as open is now on
-// the wall's other side). Fluxes near the solid are corrected along the way from cells that would end with
-// too much to the nearest that would end with too little. After the sweeps volume goes, with the smoke in it,
-// from cells that carry too much to cells near by that carry too little. Volume and smoke always go together,
-// so a uniform field stays uniform and no value leaves its bounds; what finds no partner near by is carried
-// on.
+// the wall's other side: in a region that does not continue the one it was in, or, where both sides are one
+// region, among other cells than before). Fluxes near the solid are corrected along the way from cells that
+// would end with too much to the nearest that would end with too little. After the sweeps volume goes, with
+// the smoke in it, from cells that carry too much to cells near by that carry too little. Volume and smoke
+// always go together, so a uniform field stays uniform and no value leaves its bounds; what finds no partner
+// near by is carried on.
 //
-// Limits: a thin wall that passes a whole cell in one step passes its smoke as well.
+// Nothing is handed from region to region. Limits: a thin wall with open ends that passes a whole cell in one
+// step passes its smoke as well.
 #pragma once
 #include <cstdint>
 #include <vector>
 
+#include "fluid/region_match.h"
 #include "fluid/smoke_cells.h"
 
 namespace smokebox {
@@ -26,6 +29,7 @@ struct SmokeTransfer {
 
 struct SmokeGeometry {
   const Field *openX = nullptr, *openY = nullptr, *volume = nullptr;
+  const RegionMap* regions = nullptr;
 };
 
 class TransferPlan {
@@ -33,8 +37,9 @@ class TransferPlan {
   /// Before the sweeps. `cut`: cells whose share differs from 1 before or after, or that carry more or less
   /// than they hold. `carried`: changed to what the sweeps start with (1 in closed cells). Courant numbers as
   /// in SweepJob, for the whole step.
-  void handOver(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& before,
-                const SmokeGeometry& after, Field& courantX, Field& courantY, Field& carried);
+  void handOver(const SmokeCells& cells, const std::vector<int>& cut, const RegionMatch& match,
+                const SmokeGeometry& before, const SmokeGeometry& after, Field& courantX, Field& courantY,
+                Field& carried);
   const std::vector<SmokeTransfer>& handedOver() const { return handed_; }
 
   /// After the sweeps, which left the volumes `carried` in the cells `nodes`; others have what they hold.
@@ -45,8 +50,9 @@ class TransferPlan {
   void clear();
   std::size_t bytes() const;
 
-  /// Nearest open cell by steps between neighbours, whatever lies between; -1 if there is none in reach.
-  int nearestOpen(const SmokeCells& cells, const Field& volume, int from);
+  /// Nearest open cell by steps between neighbours, whatever lies between, in a region (-1: in any); -1 if
+  /// there is none in reach.
+  int nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region);
 
  private:
   void reserve(const SmokeCells& cells);

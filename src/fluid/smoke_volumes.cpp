@@ -45,6 +45,7 @@ SmokeVolumes::SmokeVolumes(const Boundary& b)
       openXBefore_(b.openX),
       openYBefore_(b.openY),
       volumeBefore_(b.volume),
+      regionsBefore_(b.regions),
       drained_(cells_.ny, 0) {
   version_ = b.version;
   for (int j = 0; j < cells_.ny; ++j)
@@ -53,7 +54,8 @@ SmokeVolumes::SmokeVolumes(const Boundary& b)
 
 std::size_t SmokeVolumes::bytes() const {
   std::size_t sum = (cut_.capacity() + nodes_.capacity() + exchanging_.capacity()) * sizeof(int) +
-                    listed_.capacity() + plan_.bytes() + clusters_.bytes() + irregular_.bytes();
+                    listed_.capacity() + regionsBefore_.bytes() + match_.bytes() + plan_.bytes() +
+                    clusters_.bytes() + irregular_.bytes();
   for (const Field* f :
        {&courantX_, &courantY_, &start_, &measure_, &openXBefore_, &openYBefore_, &volumeBefore_})
     if (!f->empty()) sum += f->bytes();
@@ -164,9 +166,17 @@ void SmokeVolumes::prepare(const Boundary& b, const Field& u, const Field& v, do
   }
   parts_ = static_cast<int>(std::ceil(full));
   plan_.clear();
-  if (moved_)
-    plan_.handOver(cells_, cut_, {&openXBefore_, &openYBefore_, &volumeBefore_},
-                   {&b.openX, &b.openY, &b.volume}, courantX_, courantY_, start_);
+  if (moved_) {
+    match_.find(cells_, cut_, regionsBefore_, b, dt);
+    const std::size_t cut = cut_.size();
+    match_.addChanged(cells_, regionsBefore_, b.regions, cut_);
+    if (cut_.size() > cut) {
+      std::sort(cut_.begin(), cut_.end());
+      cut_.erase(std::unique(cut_.begin(), cut_.end()), cut_.end());
+    }
+    plan_.handOver(cells_, cut_, match_, {&openXBefore_, &openYBefore_, &volumeBefore_, &regionsBefore_},
+                   {&b.openX, &b.openY, &b.volume, &b.regions}, courantX_, courantY_, start_);
+  }
   listNodes();
   mostCarried_ = 1;
   for (int c : nodes_) mostCarried_ = std::max(mostCarried_, start_(cells_.i(c), cells_.j(c)));
@@ -236,7 +246,7 @@ void SmokeVolumes::settle(const Boundary& b, Axis axis, const Field& volume) {
   }
   exchanging_.assign(nodes_.begin(), nodes_.end());
   for (int k = 0; k < clusters_.count(); ++k) exchanging_.push_back(*clusters_.begin(k));
-  plan_.exchange(cells_, exchanging_, {&b.openX, &b.openY, &b.volume}, start_);
+  plan_.exchange(cells_, exchanging_, {&b.openX, &b.openY, &b.volume, &b.regions}, start_);
 }
 
 void SmokeVolumes::finish(const Boundary& b) {
@@ -268,6 +278,7 @@ void SmokeVolumes::finish(const Boundary& b) {
     openXBefore_ = b.openX;
     openYBefore_ = b.openY;
     volumeBefore_ = b.volume;
+    regionsBefore_ = b.regions;
     version_ = b.version;
   }
 }

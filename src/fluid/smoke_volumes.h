@@ -56,6 +56,9 @@ class SmokeVolumes {
   /// Cells that are cut before or after, and those that a transfer touches.
   const std::vector<int>& nodes() const { return nodes_; }
   TransferPlan& plan() { return plan_; }
+  /// Which regions of the last step's geometry go on as which.
+  const RegionMatch& match() const { return match_; }
+  const RegionMap& regionsBefore() const { return regionsBefore_; }
   const CellClusters& clusters() const { return clusters_; }
   const IrregularFaces& irregular() const { return irregular_; }
   std::size_t bytes() const;
@@ -68,6 +71,8 @@ class SmokeVolumes {
   SmokeCells cells_;
   Field courantX_, courantY_, start_, measure_;
   Field openXBefore_, openYBefore_, volumeBefore_;
+  RegionMap regionsBefore_;
+  RegionMatch match_;
   std::vector<int> cut_, nodes_, exchanging_;
   std::vector<std::uint8_t> listed_;  // by cell: is in nodes_; for moving solids only
   TransferPlan plan_;

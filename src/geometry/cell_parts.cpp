@@ -38,12 +38,24 @@ class CellCut {
 
   void run(bool perimeterOpen) {
     collectEnds();
+    cut(perimeterOpen);
+    work_.keptPart.push_back(kept_ < 0 ? -1 : work_.partCount + kept_);
+    work_.partCount += parts_;
+    work_.arcStart.push_back(static_cast<int>(work_.arcs.size()));
+  }
+
+ private:
+  using End = CoverWork::End;
+
+  void cut(bool perimeterOpen) {
     float& volume = cover_.volume(i_, j_);
     if (work_.ends.empty()) {
       volume = perimeterOpen ? static_cast<float>(std::clamp(1 - islandArea(-1), 0.0, 1.0)) : 0.0f;
+      if (perimeterOpen) keepWhole();
       return;
     }
     if (!endsTakeTurns()) {  // outlines that cross themselves by a rounding
+      keepWhole();
       volume = 0.25f * (cover_.openX(i_, j_) + cover_.openX(i_ + 1, j_) + cover_.openY(i_, j_) +
                         cover_.openY(i_, j_ + 1));
       return;
@@ -53,8 +65,17 @@ class CellCut {
     if (parts_ > 1 || kept_ < 0) shutTheOthers();
   }
 
- private:
-  using End = CoverWork::End;
+  /// One part, which leads to all faces.
+  void keepWhole() {
+    for (int side = 0; side < 4; ++side) noteArc(side, corner((side + 3) % 4), corner(side));
+    kept_ = parts_++;
+  }
+
+  void noteArc(int side, Vec2 from, Vec2 to) {
+    const bool xFace = side == 1 || side == 3;
+    const double a = xFace ? from.y : from.x, b = xFace ? to.y : to.x;
+    work_.arcs.push_back({side, std::min(a, b), std::max(a, b), work_.partCount + parts_});
+  }
 
   End endOf(int crossing, int piece, bool entry) const {
     const LineCrossing& c = work_.crossings[crossing];
@@ -112,6 +133,19 @@ class CellCut {
     return work_.ends[to].side + turn - work_.ends[from].side;
   }
 
+  /// Calls arc(side, from, to, last) for the part of each face between two ends.
+  template <class Arc>
+  void alongPerimeter(int begin, int end, Arc&& arc) const {
+    const int corners = cornersTo(begin, end);
+    Vec2 from = place(work_.ends[begin]);
+    for (int c = 0; c <= corners; ++c) {
+      const int side = (work_.ends[begin].side + c) % 4;
+      const Vec2 to = c == corners ? place(work_.ends[end]) : corner(side);
+      arc(side, from, to, c == corners);
+      from = to;
+    }
+  }
+
   void traceParts() {
     const int n = static_cast<int>(work_.ends.size());
     work_.part.assign(n, -1);
@@ -127,8 +161,10 @@ class CellCut {
         work_.part[k] = parts_;
         const int out = follower(k);
         boundary.add(place(work_.ends[k]));
-        for (int c = 0, corners = cornersTo(k, out); c < corners; ++c)
-          boundary.add(corner((work_.ends[k].side + c) % 4));
+        alongPerimeter(k, out, [&](int side, Vec2 from, Vec2 to, bool last) {
+          noteArc(side, from, to);
+          if (!last) boundary.add(to);
+        });
         const CellPiece& piece = work_.pieces[work_.ends[out].piece];
         for (int p = piece.last; p > piece.first; --p) boundary.add(work_.points[p]);
         k = work_.nextEnd[out];
@@ -181,15 +217,9 @@ class CellCut {
   void shutTheOthers() {
     for (int k = 0, n = static_cast<int>(work_.ends.size()); k < n; ++k) {
       if (!work_.ends[k].entry || work_.part[k] == kept_) continue;
-      const int out = follower(k), corners = cornersTo(k, out);
       const int solid = work_.crossings[work_.pieces[work_.ends[k].piece].entry].solid;
-      Vec2 from = place(work_.ends[k]);
-      for (int c = 0; c <= corners; ++c) {
-        const int side = (work_.ends[k].side + c) % 4;
-        const Vec2 to = c == corners ? place(work_.ends[out]) : corner(side);
-        shutFace(side, from, to, solid);
-        from = to;
-      }
+      alongPerimeter(k, follower(k),
+                     [&](int side, Vec2 from, Vec2 to, bool) { shutFace(side, from, to, solid); });
     }
   }
 

@@ -13,7 +13,8 @@
 
 namespace smokebox {
 
-/// Finds what cell (i, j) keeps. Sets its volume and adds to cover.shut. `perimeterOpen`: what holds of its
+/// Finds what cell (i, j) keeps. Sets its volume, adds to cover.shut, and notes in cover.work to which faces
+/// each of its parts leads. `perimeterOpen`: what holds of its
 /// faces if no outline crosses them.
 void keepLargestPart(const Grid& grid, int i, int j, bool perimeterOpen, GridCover& cover);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "geometry/region_map.h"
 #include "geometry/shape.h"
 
 namespace smokebox {
@@ -53,6 +54,19 @@ struct CoverWork {
   };
   std::vector<End> ends;
   std::vector<int> nextEnd, part;
+
+  // Of all cut cells, for the regions:
+  struct PartArc {
+    int side;       // as above
+    double lo, hi;  // an opening of that face, m along its line
+    int part;       // parts are numbered over all cells
+  };
+  std::vector<PartArc> arcs;
+  std::vector<int> arcStart;  // by place in `cells`, one more at the end
+  std::vector<int> keptPart;  // by place in `cells`; -1: none
+  int partCount = 0;
+  std::vector<int> sortedCells, regionRoot, regionLabel, wideRowStart;
+  std::vector<RegionMap::Run> wideRuns;
 };
 
 }  // namespace smokebox

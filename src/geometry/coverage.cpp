@@ -282,13 +282,19 @@ void coverGrid(const Grid& grid, const std::vector<SolidOutline>& solids, GridCo
 
   closeCoveredFaces(grid, cover);
   closeCoveredCells(grid, cover);
-  for (int cell : work.cells) {
-    const int i = cell % grid.nx, j = cell / grid.nx;
+  work.arcs.clear();
+  work.arcStart.assign(1, 0);
+  work.keptPart.clear();
+  work.partCount = 0;
+  for (std::size_t k = 0; k < work.cells.size(); ++k) {
+    const int cell = work.cells[k], i = cell % grid.nx, j = cell / grid.nx;
     keepLargestPart(grid, i, j, cover.openX(i, j) > 0.5f, cover);
     float& volume = cover.volume(i, j);
     if (volume > 1 - kFullCell) volume = 1;
-    work.pieceOfCell[cell] = -1;
+    work.pieceOfCell[cell] = static_cast<int>(k);
   }
+  mapRegions(grid, joined, cover);
+  for (int cell : work.cells) work.pieceOfCell[cell] = -1;
   settleShutParts(grid, joined, cover);
   snapFaces(grid, joined, cover);
 }

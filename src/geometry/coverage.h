@@ -16,6 +16,7 @@
 #include "base/field.h"
 #include "geometry/cover_work.h"
 #include "geometry/grid.h"
+#include "geometry/region_map.h"
 #include "geometry/shape.h"
 
 namespace smokebox {
@@ -30,7 +31,8 @@ using LineCover = std::vector<CoveredInterval>;  // sorted, disjoint
 
 /// The outlines of one solid at one moment.
 struct SolidOutline {
-  std::vector<Outline> outlines;  // world coordinates
+  std::vector<Outline>
+      outlines;  // world coordinates; they do not overlap (outlinesOf a shape merges its parts)
 };
 
 /// A part of a face that is shut though no solid lies there: it leads only to the lesser part of a cell.
@@ -49,6 +51,8 @@ struct GridCover {
   Field openX, openY, volume;
   /// Sorted by kind (x first), j, i, lo; disjoint.
   std::vector<ShutPart> shut;
+  /// The regions that the solids part from each other.
+  RegionMap regions;
   CoverWork work;
 };
 

@@ -6,58 +6,13 @@
 #include <cstring>
 
 #include "base/maths.h"
-#include "coupling/solids_on_grid.h"
-#include "fluid/pressure.h"
-#include "fluid/smoke.h"
+#include "support/stirred_smoke.h"
 
 namespace smokebox {
 namespace {
 
-Outline box(Vec2 centre, double w, double h, double angle = 0) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  Outline out;
-  for (Vec2 p : {Vec2{-w / 2, -h / 2}, Vec2{w / 2, -h / 2}, Vec2{w / 2, h / 2}, Vec2{-w / 2, h / 2}})
-    out.push_back({centre.x + c * p.x - s * p.y, centre.y + s * p.x + c * p.y});
-  return out;
-}
-
-// A fluid that only solids drive: each step the potential flow that fits them.
-struct Stirred {
-  Boundary b;
-  SolidsOnGrid grid;
-  ThreadPool pool;
-  Field u, v, phi;
-  double worst = 0;
-  std::unique_ptr<PressureSolver> solver;
-  std::unique_ptr<Smoke> smoke;
-
-  Stirred(int nx, int ny, double h, const std::vector<MovingSolid>& solids, int threads = 1,
-          WallKind side = WallKind::slip)
-      : pool(threads), u(nx, ny), v(nx, ny), phi(nx, ny) {
-    b.grid = {nx, ny, h};
-    b.sides[0].kind = b.sides[1].kind = side;
-    grid.cover(solids, true, b);
-    solver = std::make_unique<PressureSolver>(b, pool);
-    smoke = std::make_unique<Smoke>(b, pool, 1);
-  }
-  void step(const std::vector<MovingSolid>& solids, double dt) {
-    grid.cover(solids, true, b);
-    solver->rebuild(b);
-    u.fill(0);
-    v.fill(0);
-    const auto result = solver->project(b, u, v, phi, 1e-6, 1e-6, 200);
-    worst = std::max(worst, result.divergence);
-    smoke->transport(b, u, v, dt);
-  }
-  double massWhere(auto inside) const {
-    double sum = 0;
-    for (int j = 0; j < b.grid.ny; ++j)
-      for (int i = 0; i < b.grid.nx; ++i)
-        if (inside(b.grid.cellCentre(i, j)))
-          sum += static_cast<double>(smoke->value(0)(i, j)) * b.volume(i, j);
-    return sum * b.grid.h * b.grid.h;
-  }
-};
+using test::box;
+using test::Stirred;
 
 void report(const char* name, const Smoke::Totals& t) {
   std::printf("%s: mass error %.3g, values %.3g to %.9g\n", name, (t.mass + t.left - t.emitted) / t.emitted,
@@ -119,7 +74,7 @@ TEST(SmokeSolids, FastBlockPushesSmokeAhead) {
 }
 
 // A hollow box with walls thinner than a cell.
-MovingSolid hollowBox(double t, double spin, Vec2 drift, double wall) {
+std::vector<MovingSolid> hollowBox(double t, double spin, Vec2 drift, double wall) {
   MovingSolid s;
   s.origin = {0.5 + drift.x * t, 0.5 + drift.y * t};
   s.velocity = drift;
@@ -128,15 +83,18 @@ MovingSolid hollowBox(double t, double spin, Vec2 drift, double wall) {
   auto place = [&](double x, double y) {
     return Vec2{s.origin.x + c * x - q * y, s.origin.y + q * x + c * y};
   };
-  s.outlines = {box(place(-r, 0), wall, 2 * r + wall, a), box(place(r, 0), wall, 2 * r + wall, a),
-                box(place(0, -r), 2 * r + wall, wall, a), box(place(0, r), 2 * r + wall, wall, a)};
-  return s;
+  std::vector<MovingSolid> walls(4, s);
+  walls[0].outlines = {box(place(-r, 0), wall, 2 * r + wall, a)};
+  walls[1].outlines = {box(place(r, 0), wall, 2 * r + wall, a)};
+  walls[2].outlines = {box(place(0, -r), 2 * r + wall, wall, a)};
+  walls[3].outlines = {box(place(0, r), 2 * r + wall, wall, a)};
+  return walls;
 }
 
 void closedBox(const char* name, double wallInCells, double spin, Vec2 drift, double mostOut) {
   const int n = 96;
   const double h = 1.0 / n, wall = wallInCells * h;
-  Stirred w(n, n, h, {hollowBox(0, spin, drift, wall)});
+  Stirred w(n, n, h, hollowBox(0, spin, drift, wall));
   Field inside(n, n);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
@@ -146,7 +104,7 @@ void closedBox(const char* name, double wallInCells, double spin, Vec2 drift, do
   w.smoke->add(w.b, 0, inside, 1);
   const double dt = 0.5 * h;
   const int steps = 400;
-  for (int k = 1; k <= steps; ++k) w.step({hollowBox(k * dt, spin, drift, wall)}, dt);
+  for (int k = 1; k <= steps; ++k) w.step(hollowBox(k * dt, spin, drift, wall), dt);
   const Smoke::Totals t = w.smoke->totals();
   report(name, t);
   const Vec2 centre = {0.5 + drift.x * steps * dt, 0.5 + drift.y * steps * dt};
