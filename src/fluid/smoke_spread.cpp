@@ -5,8 +5,10 @@
 
 namespace smokebox {
 namespace {
-constexpr int kReach = 60;  // cells looked at around one
-}
+constexpr int kReach = 60;        // cells looked at around one
+constexpr float kIdle = 4;        // quanta above the ceiling that are left where they are
+constexpr float kRounding = 256;  // quanta that a cell may keep beyond what its value tells, 3e-5 of it
+}  // namespace
 
 float MassSpread::run(const SmokeCells& cells, const Boundary& b, const Field& volume, float highest,
                       Quantum q, Field& mass, Field& value, Activity& active) {
@@ -26,6 +28,10 @@ float MassSpread::run(const SmokeCells& cells, const Boundary& b, const Field& v
       for (int i = first; i < last; ++i) {
         if (!(row[i] > highest)) continue;
         float excess = mass(i, j) - holds(i, j);
+        if (excess <= kIdle * q.size) {
+          value(i, j) = highest;
+          continue;
+        }
         const float before = excess;
         const int from = cells.cell(i, j);
         queue_.assign(1, from);
@@ -49,7 +55,8 @@ float MassSpread::run(const SmokeCells& cells, const Boundary& b, const Field& v
           }
         }
         mass(i, j) -= before - excess;
-        value(i, j) = excess > 0 ? mass(i, j) / volume(i, j) : std::min(highest, mass(i, j) / volume(i, j));
+        const float now = mass(i, j) / volume(i, j);
+        value(i, j) = excess > kRounding * q.size ? now : std::min(highest, now);
         most = std::max(most, value(i, j));
       }
     }

@@ -1,6 +1,7 @@
 // Keeps the smoke under its ceiling: what a cell holds above the largest value before the step (by a velocity
 // that is not quite free of divergence, or volumes that a moving solid changed) goes to the nearest cells
-// that have room for it.
+// that have room for it. What finds no room stays, and the value stays at the ceiling, as long as it is no
+// more than masses may be off by rounding (3e-5 of the ceiling).
 #pragma once
 #include <vector>
 

@@ -65,6 +65,7 @@ std::size_t TransferPlan::bytes() const {
 void TransferPlan::clear() {
   handed_.clear();
   exchanged_.clear();
+  drawnOn_.clear();
 }
 
 void TransferPlan::reserve(const SmokeCells& cells) {
@@ -145,6 +146,7 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
                             Field& courantY, Field& carried) {
   reserve(cells);
   handed_.clear();
+  drawnOn_.clear();
   for (int c : cut) {
     float net = 0;
     for (int face = 0; face < 4; ++face) net += outwards(face) * cells.atFace(courantX, courantY, c, face);
@@ -210,6 +212,7 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
     passed_[c] = 0;
   };
   for (int c : cut) forget(c);
+  for (int c : drawnOn_) forget(c);
   for (const SmokeTransfer& t : handed_) forget(t.to);
 }
 
@@ -258,6 +261,7 @@ void TransferPlan::correctFlows(const SmokeCells& cells, const std::vector<int>&
       const float moved = std::min(lacks, excess_[other] + 0.5f * has);
       if (has <= 0 || moved <= kTolerance) continue;
       route(cells, c, other, -moved, courantX, courantY);
+      drawnOn_.push_back(other);
       lacks -= moved;
       if (lacks <= kTolerance) break;
     }

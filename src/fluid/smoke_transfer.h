@@ -41,6 +41,8 @@ class TransferPlan {
                 const SmokeGeometry& before, const SmokeGeometry& after, Field& courantX, Field& courantY,
                 Field& carried);
   const std::vector<SmokeTransfer>& handedOver() const { return handed_; }
+  /// Cells that others draw on, which need not be in `cut`.
+  const std::vector<int>& drawnOn() const { return drawnOn_; }
 
   /// After the sweeps, which left the volumes `carried` in the cells `nodes`; others have what they hold.
   void exchange(const SmokeCells& cells, const std::vector<int>& nodes, const SmokeGeometry& after,
@@ -70,7 +72,7 @@ class TransferPlan {
   std::vector<float> excess_, content_;       // by cell; 0 and 1 outside the list
   std::vector<std::uint8_t> passed_;          // by cell: a thin wall has passed it in this step
   std::vector<int> seen_, found_, cameFrom_;  // cameFrom_: by cell, the cell before it
-  std::vector<int> path_;
+  std::vector<int> path_, drawnOn_;
   int search_ = 0;
 };
 

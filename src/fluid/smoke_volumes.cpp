@@ -15,7 +15,7 @@ constexpr float kLargest = 4096;   // cells per step; faster ones, infinities an
 constexpr float kLeastVolume =
     0.1f;  // of a full cell after the step; cells with less are looked after one by one
 // What a cell may carry too much or too little of what it holds and yet be settled: the flow's divergence.
-constexpr float kSettled = 2e-5f, kSettledAtRest = 2e-5f;
+constexpr float kSettled = 2e-6f, kSettledAtRest = 2e-5f;
 }  // namespace
 
 void wrapMargin(Field& f, Axis axis, int nx, int ny, bool faces) {
@@ -137,7 +137,7 @@ void SmokeVolumes::listNodes() {
   nodes_ = cut_;
   bool drained = false;
   for (int j = 0; j < cells_.ny; ++j) drained |= drained_[j] > 1 - kLeastVolume;
-  if (plan_.handedOver().empty() && !drained) return;
+  if (plan_.handedOver().empty() && plan_.drawnOn().empty() && !drained) return;
   listed_.resize(cells_.count(), 0);
   for (int c : cut_) listed_[c] = 1;
   auto add = [&](int c) {
@@ -146,6 +146,7 @@ void SmokeVolumes::listNodes() {
     nodes_.push_back(c);
   };
   for (const SmokeTransfer& t : plan_.handedOver()) add(t.from), add(t.to);
+  for (int c : plan_.drawnOn()) add(c);
   // A velocity that is far from free of divergence would empty a cell.
   for (int j = 0; j < cells_.ny; ++j)
     for (int i = 0; drained_[j] > 1 - kLeastVolume && i < cells_.nx; ++i)

@@ -52,8 +52,51 @@ TEST(SmokeSolids, BlockSweepingThroughSmokeLosesNothing) {
   std::printf("  lowest %.6f, highest %.9f\n", least, most);
   EXPECT_NEAR(t.mass, t.emitted, 1e-8 * t.emitted);
   EXPECT_GE(t.min, 0);
-  EXPECT_LE(most, 1 + 1e-4);
-  EXPECT_GE(least, 1 - 1e-3);
+  EXPECT_LE(most, 1 + 1e-6);
+  EXPECT_GE(least, 1 - 1e-4);
+}
+
+TEST(SmokeSolids, FanAndBlockKeepMassAndBounds) {
+  // A fan turns and a block swings in smoke that fills a part of the box, for 1000 steps: the mass is what
+  // was put there, and no value is below 0 or above the highest that was put there.
+  const int n = 96;
+  auto at = [](double t, double dt) {
+    MovingSolid fan, block;
+    auto place = [](double time) {
+      return Vec2{0.72 + 0.15 * std::sin(2 * time), 0.5 + 0.3 * std::sin(3 * time)};
+    };
+    block.origin = place(t);
+    block.velocity = (1 / dt) * (block.origin - place(t - dt));
+    block.spin = 2;
+    block.outlines = {box(block.origin, 0.12, 0.07, 2 * t)};
+    fan.origin = {0.28, 0.5};
+    fan.spin = 3;
+    fan.outlines = {box(fan.origin, 0.4, 0.012, 3 * t)};
+    return std::vector<MovingSolid>{fan, block};
+  };
+  Stirred w(n, n, 1.0 / n, at(0, 1), 1, WallKind::slip, 2);
+  Field blob(n, n), band(n, n);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      blob(i, j) = std::hypot(i - 30.0, j - 30.0) < 20 ? 1 : 0;
+      band(i, j) = j > n / 2 ? 1 : 0;
+    }
+  w.smoke->add(w.b, 0, blob, 0.7);
+  w.smoke->add(w.b, 1, band, 0.7);
+  const double dt = 0.4 / n, highest = w.smoke->totals().max;
+  double most = 0, least = 1, worst = 0;
+  for (int k = 1; k <= 1000; ++k) {
+    w.step(at(k * dt, dt), dt);
+    const Smoke::Totals t = w.smoke->totals();
+    most = std::max(most, t.max);
+    least = std::min(least, t.min);
+    worst = std::max(worst, std::fabs(t.mass - t.emitted) / t.emitted);
+  }
+  std::printf("fan and block: mass error %.3g, values %.3g to highest + %.3g\n", worst, least,
+              most - highest);
+  EXPECT_LE(worst, 1e-12);
+  EXPECT_GE(least, 0);
+  EXPECT_LE(most, highest);
 }
 
 TEST(SmokeSolids, FastBlockPushesSmokeAhead) {
@@ -70,7 +113,7 @@ TEST(SmokeSolids, FastBlockPushesSmokeAhead) {
   report("fast block", t);
   EXPECT_NEAR(t.mass, t.emitted, 1e-8 * t.emitted);
   EXPECT_GE(t.min, 0);
-  EXPECT_LE(t.max, 1.001);
+  EXPECT_LE(t.max, 1 + 1e-6);
 }
 
 // A hollow box with walls thinner than a cell.
@@ -91,7 +134,7 @@ std::vector<MovingSolid> hollowBox(double t, double spin, Vec2 drift, double wal
   return walls;
 }
 
-void closedBox(const char* name, double wallInCells, double spin, Vec2 drift, double mostOut) {
+void closedBox(const char* name, double wallInCells, double spin, Vec2 drift) {
   const int n = 96;
   const double h = 1.0 / n, wall = wallInCells * h;
   Stirred w(n, n, h, hollowBox(0, spin, drift, wall));
@@ -116,20 +159,15 @@ void closedBox(const char* name, double wallInCells, double spin, Vec2 drift, do
   std::printf("  got out: %.3g of all\n", out / t.emitted);
   EXPECT_NEAR(t.mass, t.emitted, 1e-8 * t.emitted);
   EXPECT_GE(t.min, 0);
-  EXPECT_LE(out, mostOut * t.emitted);
+  EXPECT_EQ(out, 0);
 }
 
 TEST(SmokeSolids, NothingLeavesAClosedTurningBox) {
-  // Walls of three cells: what is inside stays inside, to a hundred-thousandth.
-  closedBox("turning box", 3, 2, {0, 0}, 1e-5);
-}
-TEST(SmokeSolids, NothingLeavesAClosedThinTurningBox) {
-  // Walls of a third of a cell: the same, to two hundred-thousandths.
-  closedBox("thin turning box", 0.34, 2, {0, 0}, 2e-5);
-}
-TEST(SmokeSolids, ThinDriftingBoxKeepsMostOfItsSmoke) {
-  // A cell that such a wall passes through has one value for both sides: a few percent change sides.
-  closedBox("thin drifting box", 0.34, 0.3, {0.1, 0.05}, 0.05);
+  // What is inside walls of three cells or of a third of a cell stays inside, to the last bit (more of this
+  // in smoke_leak_test.cpp).
+  closedBox("turning box", 3, 2, {0, 0});
+  closedBox("thin turning box", 0.34, 2, {0, 0});
+  closedBox("thin drifting box", 0.34, 0.3, {0.1, 0.05});
 }
 
 MovingSolid piston(double x, double speed, double thickness) {
@@ -171,7 +209,7 @@ TEST(SmokeSolids, PistonDrivesTheSmokeOutBeforeIt) {
                 behind / t.emitted, most, wrong);
     EXPECT_NEAR(t.mass + t.left, t.emitted, 1e-12);
     EXPECT_LE(behind, 1e-6 * t.emitted);
-    EXPECT_LE(most, 1 + 1e-4);
+    EXPECT_LE(most, 1 + 1e-6);
     EXPECT_LE(wrong, 0.04);
   }
 }
