@@ -12,6 +12,9 @@ namespace {
 std::atomic<long> allocations{0};
 }  // namespace
 
+// The two of a pair are seen apart where they are inlined.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size ? size : 1)) return memory;
