@@ -8,6 +8,7 @@ namespace smokebox {
 namespace {
 
 constexpr int kRowGrain = 32;
+constexpr int kTile = 512;      // columns that are worked on at a time
 constexpr float kFade = 1e-3f;  // of the largest gradient
 
 /// Whether a node of the grid touches a shut face; beyond a side that does not wrap there are none.
@@ -41,10 +42,61 @@ void vorticityAtNodes(const Boundary& boundary, const Field& u, const Field& v, 
 }
 
 Confinement::Confinement(const Boundary& boundary, ThreadPool& pool)
-    : pool_(pool),
-      omega_(boundary.grid.nx, boundary.grid.ny),
-      forceX_(boundary.grid.nx, boundary.grid.ny),
-      forceY_(boundary.grid.nx, boundary.grid.ny) {}
+    : pool_(pool), omega_(boundary.grid.nx, boundary.grid.ny) {}
+
+double Confinement::steepestSquare() {
+  const int nx = omega_.nx(), ny = omega_.ny();
+  const float perTwoMetres = perTwoMetres_;
+  return pool_.max(0, ny + 1, kRowGrain, 0, [&](int begin, int end) {
+    float largest = 0;
+    for (int j = begin; j < end; ++j) {
+      const float *w = omega_.row(j), *above = omega_.row(j + 1), *below = omega_.row(j - 1);
+#pragma omp simd reduction(max : largest)
+      for (int i = 0; i <= nx; ++i) {
+        const float gx = perTwoMetres * (std::fabs(w[i + 1]) - std::fabs(w[i - 1]));
+        const float gy = perTwoMetres * (std::fabs(above[i]) - std::fabs(below[i]));
+        largest = std::max(largest, gx * gx + gy * gy);
+      }
+    }
+    return static_cast<double>(largest);
+  });
+}
+
+void Confinement::forceAtNodes(const Boundary& boundary, int j, int first, int count, float scale,
+                               float fadeSquare, float* fx, float* fy) const {
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  const float *w = omega_.row(j) + first, *above = omega_.row(j + 1) + first,
+              *below = omega_.row(j - 1) + first;
+  const float perTwoMetres = perTwoMetres_;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float gx = perTwoMetres * (std::fabs(w[i + 1]) - std::fabs(w[i - 1]));
+    const float gy = perTwoMetres * (std::fabs(above[i]) - std::fabs(below[i]));
+    const float perSlope = scale * w[i] / std::sqrt(gx * gx + gy * gy + fadeSquare);
+    fx[i] = perSlope * gy;
+    fy[i] = -(perSlope * gx);
+  }
+  // Beside the domain's sides the map of open faces may not go on: look twice there.
+  const auto onRim = [&](int i) {
+    if (touchesShutFace(boundary, i, j)) fx[i - first] = fy[i - first] = 0;
+  };
+  const bool rimRow = j == 0 || j == ny;
+  if (rimRow || first == 0) onRim(first);
+  if (rimRow)
+    for (int i = first + 1; i < first + count; ++i) onRim(i);
+  else if (first + count == nx + 1)
+    onRim(nx);
+  if (rimRow) return;
+  const float *openX = boundary.openX.row(j) + first, *openY = boundary.openY.row(j) + first,
+              *openBelow = boundary.openX.row(j - 1) + first;
+  const int begin = first == 0 ? 1 : 0, end = first + count == nx + 1 ? count - 1 : count;
+#pragma omp simd
+  for (int i = begin; i < end; ++i) {
+    const bool open = (openX[i] > 0) & (openBelow[i] > 0) & (openY[i] > 0) & (openY[i - 1] > 0);
+    fx[i] = open ? fx[i] : 0.0f;
+    fy[i] = open ? fy[i] : 0.0f;
+  }
+}
 
 void Confinement::addForce(const Boundary& boundary, const Field& u, const Field& v, double strength,
                            double length, Field& accelerationU, Field& accelerationV) {
@@ -61,63 +113,40 @@ void Confinement::addForce(const Boundary& boundary, const Field& u, const Field
   std::copy_n(omega_.row(wrapY ? ny - 1 : 0), nx + 1, omega_.row(-1));
   std::copy_n(omega_.row(wrapY ? 1 : ny), nx + 1, omega_.row(ny + 1));
 
-  const auto perTwoMetres = static_cast<float>(0.5 / boundary.grid.h);
-  const double steepestSquare = pool_.max(0, ny + 1, kRowGrain, 0, [&](int begin, int end) {
-    float largest = 0;
-    for (int j = begin; j < end; ++j) {
-      const float *w = omega_.row(j), *above = omega_.row(j + 1), *below = omega_.row(j - 1);
-      float *gx = forceX_.row(j), *gy = forceY_.row(j);
-#pragma omp simd reduction(max : largest)
-      for (int i = 0; i <= nx; ++i) {
-        gx[i] = perTwoMetres * (std::fabs(w[i + 1]) - std::fabs(w[i - 1]));
-        gy[i] = perTwoMetres * (std::fabs(above[i]) - std::fabs(below[i]));
-        largest = std::max(largest, gx[i] * gx[i] + gy[i] * gy[i]);
-      }
-    }
-    return static_cast<double>(largest);
-  });
-  if (!(steepestSquare > 0)) return;
-
-  const float fadeSquare = std::max(static_cast<float>(steepestSquare) * (kFade * kFade), 1e-37f);
+  perTwoMetres_ = static_cast<float>(0.5 / boundary.grid.h);
+  const double steepest = steepestSquare();
+  if (!(steepest > 0)) return;
+  const float fadeSquare = std::max(static_cast<float>(steepest) * (kFade * kFade), 1e-37f);
   const auto scale = static_cast<float>(strength * length);
+  // Forces at the nodes of two rows at a time, and only of some columns, so that they stay in the cache.
   pool_.blocks(0, ny + 1, kRowGrain, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      const float* w = omega_.row(j);
-      float *fx = forceX_.row(j), *fy = forceY_.row(j);
+    alignas(64) float lines[2][2][kTile + 1];  // of even and odd rows, along x and y
+    for (int first = 0; first <= nx; first += kTile) {
+      const int faces = std::min(kTile, nx + 1 - first);      // x-faces
+      const int nodes = std::min(kTile + 1, nx + 1 - first);  // of both sides of the y-faces
+      const int across = std::min(kTile, nx - first);         // y-faces
+      const auto find = [&](int j) {
+        forceAtNodes(boundary, j, first, nodes, scale, fadeSquare, lines[j & 1][0], lines[j & 1][1]);
+      };
+      find(begin);
+      for (int j = begin; j < end; ++j) {
+        if (j < ny) {
+          find(j + 1);
+          const float *fx = lines[j & 1][0], *fxAbove = lines[(j + 1) & 1][0];
+          const float* openX = boundary.openX.row(j) + first;
+          float* au = accelerationU.row(j) + first;
 #pragma omp simd
-      for (int i = 0; i <= nx; ++i) {
-        const float gx = fx[i], gy = fy[i];
-        const float perSlope = scale * w[i] / std::sqrt(gx * gx + gy * gy + fadeSquare);
-        fx[i] = perSlope * gy;
-        fy[i] = -(perSlope * gx);
-      }
-      const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
-      const float* openBelow = boundary.openX.row(j - 1);
-      for (int i = 0; i <= nx; ++i) {
-        // Beside the domain's sides the map of open faces may not go on: look twice there.
-        const bool inside = i > 0 && i < nx && j > 0 && j < ny;
-        const bool open = inside && openX[i] > 0 && openBelow[i] > 0 && openY[i] > 0 && openY[i - 1] > 0;
-        if (open || (!inside && !touchesShutFace(boundary, i, j))) continue;
-        fx[i] = fy[i] = 0;
-      }
-    }
-  });
-
-  pool_.blocks(0, ny + 1, kRowGrain, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      const float *fx = forceX_.row(j), *fxAbove = forceX_.row(j + 1), *fy = forceY_.row(j);
-      const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
-      float *au = accelerationU.row(j), *av = accelerationV.row(j);
-      if (j < ny) {
+          for (int i = 0; i < faces; ++i) au[i] += openX[i] > 0 ? 0.5f * (fx[i] + fxAbove[i]) : 0.0f;
+        }
+        const float *fy = lines[j & 1][1], *openY = boundary.openY.row(j) + first;
+        float* av = accelerationV.row(j) + first;
 #pragma omp simd
-        for (int i = 0; i <= nx; ++i) au[i] += openX[i] > 0 ? 0.5f * (fx[i] + fxAbove[i]) : 0.0f;
+        for (int i = 0; i < across; ++i) av[i] += openY[i] > 0 ? 0.5f * (fy[i] + fy[i + 1]) : 0.0f;
       }
-#pragma omp simd
-      for (int i = 0; i < nx; ++i) av[i] += openY[i] > 0 ? 0.5f * (fy[i] + fy[i + 1]) : 0.0f;
     }
   });
 }
 
-std::size_t Confinement::bytes() const { return omega_.bytes() + forceX_.bytes() + forceY_.bytes(); }
+std::size_t Confinement::bytes() const { return omega_.bytes(); }
 
 }  // namespace smokebox

@@ -25,9 +25,15 @@ class Confinement {
   std::size_t bytes() const;
 
  private:
+  /// Square of the largest |grad|omega||.
+  double steepestSquare();
+  /// The force at `count` nodes of row j from column `first` on.
+  void forceAtNodes(const Boundary& boundary, int j, int first, int count, float scale, float fadeSquare,
+                    float* fx, float* fy) const;
+
   ThreadPool& pool_;
-  Field omega_;            // at nodes
-  Field forceX_, forceY_;  // at nodes: first grad|omega|, then the force
+  Field omega_;             // at nodes
+  float perTwoMetres_ = 0;  // 1 / (2 h)
 };
 
 }  // namespace smokebox
