@@ -47,6 +47,7 @@ FilmRanges commonRanges(const std::vector<SceneDocument>& scenes, int threadsEac
       widen(common.pressure, ranges.pressure);
       widen(common.vorticity, ranges.vorticity);
       widen(common.speed, ranges.speed);
+      widen(common.temperature, ranges.temperature);
     } catch (const OtherFailed&) {
     } catch (...) {
       if (!error) error = std::current_exception();

@@ -31,7 +31,8 @@ void Fluid::boundaryChanged(const Boundary& boundary) {
 
 void Fluid::prepareUncovering(const Boundary& before) { advection_.extend(before, u_, v_); }
 
-void Fluid::beginForces() {
+void Fluid::beginForces(const Boundary& boundary) {
+  if (viscosity_) viscosity_->bendAtWalls(boundary, u_, v_);
   constexpr int kRows = 32;
   const int nx = u_.nx();
   pool_.blocks(0, u_.ny() + 1, kRows, [&](int begin, int end) {
@@ -75,7 +76,6 @@ void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {
 #pragma omp simd
     for (int i = 0; i <= nx; ++i) acceleration[i] = perStep * (q[i] - acceleration[i]);
   };
-  viscosity_->bendAtWalls(boundary, u_, v_);
   pool_.blocks(0, ny + 1, kRows, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       takeOut(u_.row(j), viscousU_.row(j));

@@ -37,7 +37,7 @@ class Fluid {
   /// pressure inside, the stages of a steady flow are in balance: without it each middle projection would
   /// answer to the missing friction, and the velocity beside a wall, and with it the drag, would be off by a
   /// share of the step.
-  void beginForces();
+  void beginForces(const Boundary& boundary);
   void addConfinement(const Boundary& boundary, double strength, double length);
   void advect(const Boundary& boundary, double dt);
   /// Takes the last viscous acceleration out again and puts that of this step in, implicitly.

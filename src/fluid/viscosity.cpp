@@ -31,6 +31,7 @@ struct System {
   Field wallWeight;                   // sum of the cut links' weights
   std::vector<float> linkWeight;      // of each of the boundary's links
   std::vector<int> bent;              // links to a wall of the domain along the velocity: see bendAtWalls()
+  std::vector<float> mostBend;        // how far that may move the velocity in a step, m/s
   std::vector<float> bend;            // what each of them adds to the Laplacian, times h^2
   Field unknown;                      // 1 on open faces, 0 elsewhere
   int chunks = 0;                     // in a row
@@ -206,6 +207,7 @@ void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
     (link.di != 0 ? s.toRight : s.toAbove)(i, j) = 0;
   }
   s.bend.assign(s.bent.size(), 0.0f);
+  s.mostBend.assign(s.bent.size(), 0.0f);
   wrap(s, s.toRight);
   wrap(s, s.toAbove);
   findRegular(s);
@@ -217,6 +219,7 @@ void Viscosity::Impl::bendAtWalls(const Boundary& boundary, System& s, const Fie
     const CutLink& link = links[s.bent[n]];
     const float here = x(link.i, link.j), next = x(link.i - link.di, link.j - link.dj);
     const float second = (link.velocity - here) / link.theta + (next - here);
+    s.mostBend[n] = std::fabs(link.velocity - here) + std::fabs(next - here);
     s.bend[n] = (1 - link.theta) / (1 + link.theta) * second;
   }
 }
@@ -251,7 +254,7 @@ float Viscosity::Impl::addWalls(const Boundary& boundary, const System& s, float
     largest = std::max(largest, std::fabs(links[k].velocity));
   }
   for (std::size_t n = 0; n < s.bent.size(); ++n)
-    right(links[s.bent[n]].i, links[s.bent[n]].j) += c * s.bend[n];
+    right(links[s.bent[n]].i, links[s.bent[n]].j) += std::clamp(c * s.bend[n], -s.mostBend[n], s.mostBend[n]);
   return largest;
 }
 

@@ -102,6 +102,38 @@ const ColorMap kSpeedLight{false,
                              {141.4367f, 2.3085f, -16.3207f},
                              {-121.2394f, -0.3395f, 7.3883f},
                              {38.0273f, -0.1559f, -0.3144f}}}};
+// From night violet over red to pale yellow.
+const ColorMap kTemperatureDark{false,
+                                {{{0.0706f, 0.0471f, 0.1412f},
+                                  {0.8166f, 0.0768f, 1.4848f},
+                                  {1.0671f, 3.4224f, -1.2355f},
+                                  {9.3912f, -22.6612f, -2.4404f},
+                                  {-29.7563f, 58.0999f, -10.5108f},
+                                  {28.5025f, -58.0749f, 27.2584f},
+                                  {-9.0916f, 20.0429f, -13.9761f}}},
+                                {{{0.0706f, 0.0471f, 0.1412f},
+                                  {0.8166f, 0.0768f, 1.4848f},
+                                  {1.0671f, 3.4224f, -1.2355f},
+                                  {9.3912f, -22.6612f, -2.4404f},
+                                  {-29.7563f, 58.0999f, -10.5108f},
+                                  {28.5025f, -58.0749f, 27.2584f},
+                                  {-9.0916f, 20.0429f, -13.9761f}}}};
+// From ivory over orange to deep violet.
+const ColorMap kTemperatureLight{false,
+                                 {{{0.9608f, 0.9608f, 0.9020f},
+                                   {0.2241f, -0.3386f, -1.4685f},
+                                   {-0.5714f, -1.4772f, -6.7243f},
+                                   {-0.5170f, 0.3047f, 26.1892f},
+                                   {2.9865f, -3.4072f, -32.7609f},
+                                   {-6.4275f, 8.7935f, 18.1006f},
+                                   {3.6229f, -4.7575f, -3.9674f}}},
+                                 {{{0.9608f, 0.9608f, 0.9020f},
+                                   {0.2241f, -0.3386f, -1.4685f},
+                                   {-0.5714f, -1.4772f, -6.7243f},
+                                   {-0.5170f, 0.3047f, 26.1892f},
+                                   {2.9865f, -3.4072f, -32.7609f},
+                                   {-6.4275f, 8.7935f, 18.1006f},
+                                   {3.6229f, -4.7575f, -3.9674f}}}};
 }  // namespace
 
 Color ColorMap::at(double u) const {
@@ -119,6 +151,8 @@ const ColorMap& colorMap(ColorMapKind kind, bool darkGround) {
       return darkGround ? kPressureDark : kPressureLight;
     case ColorMapKind::vorticity:
       return darkGround ? kVorticityDark : kVorticityLight;
+    case ColorMapKind::temperature:
+      return darkGround ? kTemperatureDark : kTemperatureLight;
     case ColorMapKind::speed:
       break;
   }

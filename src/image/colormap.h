@@ -21,7 +21,7 @@ struct ColorMap {
   Color at(double u) const;
 };
 
-enum class ColorMapKind { pressure, vorticity, speed };
+enum class ColorMapKind { pressure, vorticity, speed, temperature };
 /// The map that suits the ground.
 const ColorMap& colorMap(ColorMapKind kind, bool darkGround);
 

@@ -21,6 +21,8 @@ bool hasField(const Snapshot& snapshot, LayerKind kind) {
       return !snapshot.pressure.empty();
     case LayerKind::vorticity:
       return !snapshot.vorticity.empty();
+    case LayerKind::temperature:
+      return !snapshot.temperature.empty();
     case LayerKind::speed:
       return !snapshot.velocityX.empty() && !snapshot.velocityY.empty();
     default:
@@ -36,6 +38,9 @@ FieldStyle fieldStyle(const Snapshot& snapshot, const LayerSpec& layer, const Pi
   if (layer.kind == LayerKind::vorticity)
     return {colorMap(ColorMapKind::vorticity, dark), layer.range.value_or(snapshot.vorticityRange),
             "vorticity (1/s)"};
+  if (layer.kind == LayerKind::temperature)
+    return {colorMap(ColorMapKind::temperature, dark), layer.range.value_or(snapshot.temperatureRange),
+            "temperature"};
   return {colorMap(ColorMapKind::speed, dark), layer.range.value_or(snapshot.speedRange), "speed (m/s)"};
 }
 
@@ -66,7 +71,10 @@ void FieldLayer::gather(const Snapshot& snapshot, LayerKind kind, const PictureF
       const float *u = snapshot.velocityX.row(fromJ), *v = snapshot.velocityY.row(fromJ);
       eachColumn([&](int i) { return std::sqrt(u[i] * u[i] + v[i] * v[i]); });
     } else {
-      const float* row = (nodes ? snapshot.vorticity : snapshot.pressure).row(fromJ);
+      const float* row = (nodes                            ? snapshot.vorticity
+                          : kind == LayerKind::temperature ? snapshot.temperature
+                                                           : snapshot.pressure)
+                             .row(fromJ);
       eachColumn([&](int i) { return row[i]; });
     }
   }

@@ -46,7 +46,8 @@ struct Renderer::Impl {
 
 namespace {
 bool isField(LayerKind kind) {
-  return kind == LayerKind::pressure || kind == LayerKind::vorticity || kind == LayerKind::speed;
+  return kind == LayerKind::pressure || kind == LayerKind::vorticity || kind == LayerKind::speed ||
+         kind == LayerKind::temperature;
 }
 /// Can it be drawn together with the ground?
 bool fillsPicture(const Snapshot& snapshot, const LayerSpec& layer) {
@@ -121,6 +122,7 @@ void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& lay
     case LayerKind::pressure:
     case LayerKind::vorticity:
     case LayerKind::speed:
+    case LayerKind::temperature:
       if (hasField(snapshot, layer.kind)) field.draw(snapshot, layer, frame, onGround);
       break;
     case LayerKind::velocity:

@@ -10,7 +10,7 @@ namespace smokebox {
 namespace {
 
 /// Keys of the format that this version cannot simulate yet: refused by name, never passed over in silence.
-constexpr const char* kNotYet[] = {"bodies", "springs", "joints", "particles", "cloth", "temperature"};
+constexpr const char* kNotYet[] = {"bodies", "springs", "joints", "particles", "cloth"};
 
 }  // namespace
 
@@ -26,6 +26,7 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   readTimeAndOutput(scene, spec);
   readFluid(scene, spec);
   readSmoke(scene, spec);
+  readTemperature(scene, spec);
   readSolids(scene, spec);
   readProbes(scene, spec);
   readView(scene, spec);  // before the events, which show its layers
@@ -39,6 +40,7 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   if (reader.errors() == 0) {
     checkInflow(scene, spec);
     checkFormulas(scene, spec);
+    checkTemperature(scene, spec, events);
     if (events) checkPlacement(scene, spec);
   }
   if (events) checkSetActions(root, name, spec, reader);
@@ -88,6 +90,11 @@ void checkSetActions(const YamlPtr& root, const std::string& name, SceneSpec& sp
       reader.error(mark,
                    "setting `" + set->path + "`: the scene has no fluid, and none can be added during a run",
                    "add `fluid: {}`");
+    if (changed.temperature.named != plain.temperature.named)
+      reader.error(
+          mark,
+          "setting `" + set->path + "`: the scene has no temperature, and none can be added during a run",
+          "add `temperature: {}`");
     for (const SourceSpec& source : changed.smoke.sources) spec.laterSmokeColors.push_back(source.color);
   }
 }

@@ -25,6 +25,7 @@ constexpr LayerEntry kLayers[] = {
     {"pressure", LayerKind::pressure, opacity | range | bar},
     {"vorticity", LayerKind::vorticity, opacity | range | bar},
     {"speed", LayerKind::speed, opacity | range | bar},
+    {"temperature", LayerKind::temperature, opacity | range | bar},
     {"velocity", LayerKind::velocity, opacity | spacing | scale | color},
     {"caption", LayerKind::caption, opacity | color},
     {"time", LayerKind::time, opacity | color},

@@ -19,6 +19,7 @@ void readWalls(MapReader& scene, SceneSpec& spec);
 void readTimeAndOutput(MapReader& scene, SceneSpec& spec);
 void readFluid(MapReader& scene, SceneSpec& spec);
 void readSmoke(MapReader& scene, SceneSpec& spec);
+void readTemperature(MapReader& scene, SceneSpec& spec);
 void readSolids(MapReader& scene, SceneSpec& spec);
 void readProbes(MapReader& scene, SceneSpec& spec);
 void readEvents(MapReader& scene, SceneSpec& spec);
@@ -32,6 +33,8 @@ void checkSetActions(const YamlPtr& root, const std::string& name, SceneSpec& sp
 void checkInflow(MapReader& scene, const SceneSpec& spec);
 /// Reports starting velocities and motions that are no finite numbers, at places and times that are tried.
 void checkFormulas(MapReader& scene, const SceneSpec& spec);
+/// Reports temperatures that are no finite numbers, and warns of those that do nothing.
+void checkTemperature(MapReader& scene, const SceneSpec& spec, bool warnings);
 /// Warns of things that lie outside of the domain.
 void checkPlacement(MapReader& scene, const SceneSpec& spec);
 

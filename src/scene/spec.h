@@ -70,6 +70,18 @@ struct SmokeSpec {
   std::vector<SourceSpec> sources;
 };
 
+struct TemperatureSpec {
+  bool named = false;         // no temperature is modelled otherwise
+  double diffusivity = 0;     // m^2/s
+  double expansion = 3.4e-3;  // share of the volume that a degree adds, 1/K; that of air
+  Expression start;           // of x and y
+  std::optional<double>
+      reference;  // at which the fluid neither rises nor sinks; default: the mean of the start
+  /// Indexed by Side, of x, y and t: what a closed wall keeps, or what the fluid brings that comes in;
+  /// without it a wall is insulated, and fluid comes in as it was there at the start.
+  std::array<std::optional<Expression>, 4> walls;
+};
+
 struct SolidSpec {
   std::string name;
   PlacedShape shape;  // pose at rest: what `position` and `angle` say (zero for world coordinates)
@@ -122,7 +134,18 @@ struct EventSpec {
 
 // --- pictures
 // -------------------------------------------------------------------------------------------------------
-enum class LayerKind { smoke, solids, pressure, vorticity, speed, velocity, caption, time, probes };
+enum class LayerKind {
+  smoke,
+  solids,
+  pressure,
+  vorticity,
+  speed,
+  temperature,
+  velocity,
+  caption,
+  time,
+  probes
+};
 
 /// As a scene calls it.
 const char* layerName(LayerKind kind);
@@ -174,9 +197,11 @@ struct SceneSpec {
   DomainSpec domain;
   TimeSpec time;
   Vec2 gravity;
-  bool hasFluid = false;  // fluid, smoke or an inflow is named: without one of them no fluid is built
+  bool hasFluid =
+      false;  // fluid, smoke, temperature or an inflow is named: without one of them no fluid is built
   FluidSpec fluid;
   SmokeSpec smoke;
+  TemperatureSpec temperature;
   std::vector<SolidSpec> solids;
   std::vector<EventSpec> events;
   std::vector<ProbeSpec> probes;

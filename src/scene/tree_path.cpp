@@ -168,6 +168,8 @@ std::string whyFixed(const std::string& path) {
   const std::string& first = steps[0];
   for (const char* fixed : {"title", "domain", "time", "output", "method", "events"})
     if (first == fixed) return "`" + first + "` cannot change during a run";
+  if (first == "temperature" && (steps.size() < 2 || steps[1] == "start"))
+    return "`" + path + "` cannot change during a run";
   if (first == "solids" || first == "probes") {
     if (steps.size() < 3) return "the list of `" + first + "` cannot change during a run";
     for (const char* fixed : {"name", "shape", "position", "angle", "report", "at", "region", "follow"})

@@ -4,7 +4,8 @@ namespace smokebox {
 
 std::vector<Study> allCases() {
   std::vector<Study> all = {driftingVortices(), vortexPair()};
-  for (const std::vector<Study>& family : {lidDrivenCavities(), mirrorImages(), fluidsAtRest()})
+  for (const std::vector<Study>& family :
+       {lidDrivenCavities(), mirrorImages(), fluidsAtRest(), heatedCavities()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

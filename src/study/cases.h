@@ -9,6 +9,7 @@ Study vortexPair();
 std::vector<Study> lidDrivenCavities();
 std::vector<Study> mirrorImages();
 std::vector<Study> fluidsAtRest();
+std::vector<Study> heatedCavities();
 
 std::vector<Study> allCases();
 

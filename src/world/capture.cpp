@@ -76,6 +76,7 @@ void World::capture(Snapshot& snapshot) const {
 
   auto wants = [&](LayerKind kind) { return fluid_ && snapshot.shows(kind); };
   if (wants(LayerKind::pressure)) capturePressure(snapshot.pressure);
+  if (heat_ && wants(LayerKind::temperature)) captureTemperature(snapshot.temperature);
   if (wants(LayerKind::vorticity) || wants(LayerKind::speed) || wants(LayerKind::velocity))
     captureVelocity(wants(LayerKind::vorticity), snapshot);
 
@@ -126,6 +127,18 @@ void World::capturePressure(Field& pressure) const {
     for (int i = 0; i < grid.nx; ++i)
       pressure(i, j) = static_cast<float>(scale * (fluid_->phi()(i, j) - zero));
   extendIntoSolids(grid, pressure, known);
+}
+
+void World::captureTemperature(Field& temperature) const {
+  const Grid& grid = boundary_.grid;
+  ensure(temperature, grid);
+  std::vector<unsigned char> known(grid.cells());
+  for (int j = 0; j < grid.ny; ++j)
+    for (int i = 0; i < grid.nx; ++i) {
+      known[static_cast<std::size_t>(j) * grid.nx + i] = heat_->isOpen(i, j);
+      temperature(i, j) = static_cast<float>(heat_->at(i, j));
+    }
+  extendIntoSolids(grid, temperature, known);
 }
 
 void World::captureVelocity(bool vorticity, Snapshot& snapshot) const {

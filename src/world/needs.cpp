@@ -75,14 +75,20 @@ Needs needsOf(const SceneSpec& spec) {
 
   needs.smoke = !spec.smokeColors().empty();
   needs.buoyancy = needs.smoke && (spec.smoke.buoyancy != 0 || eventSets(spec, "smoke.buoyancy"));
+  needs.heat = spec.temperature.named;
+  needs.heatDiffuses =
+      needs.heat && (spec.temperature.diffusivity > 0 || eventSets(spec, "temperature.diffusivity"));
+  needs.heatRises = needs.heat &&
+                    (spec.temperature.expansion != 0 || eventSets(spec, "temperature.expansion")) &&
+                    (length(spec.gravity) > 0 || eventSets(spec, "gravity"));
   needs.sourcesDrive =
       needs.smoke && (eventSets(spec, "smoke.sources") ||
                       std::any_of(spec.smoke.sources.begin(), spec.smoke.sources.end(),
                                   [](const SourceSpec& source) { return source.velocity.has_value(); }));
   needs.parts.viscous = spec.fluid.viscosity > 0 || eventSets(spec, "fluid.viscosity");
   needs.parts.confined = spec.fluid.vorticity != 0 || eventSets(spec, "fluid.vorticity");
-  needs.parts.forced =
-      needs.parts.viscous || needs.parts.confined || needs.buoyancy || anyEvent<ForceAction>(spec);
+  needs.parts.forced = needs.parts.viscous || needs.parts.confined || needs.buoyancy || needs.heatRises ||
+                       anyEvent<ForceAction>(spec);
   needs.parts.inviscidDrag =
       (spec.fluid.viscosity == 0 || eventSets(spec, "fluid.viscosity")) &&
       (eventSets(spec, "solids") || std::any_of(spec.solids.begin(), spec.solids.end(),

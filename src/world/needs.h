@@ -14,6 +14,9 @@ struct Needs {
   Fluid::Parts parts;
   bool smoke = false;  // a source or a burst
   bool buoyancy = false;
+  bool heat = false;          // a temperature is named
+  bool heatDiffuses = false;  // a diffusivity that is not 0, now or after an event
+  bool heatRises = false;     // expansion and gravity
   bool sourcesDrive = false;  // a source with a velocity
   bool movingSolids = false;
   bool reports = false;  // force and torque on a solid

@@ -10,8 +10,8 @@ namespace {
 PlanLine fieldsInPictures(const SceneSpec& spec) {
   PlanLine line{"fields in pictures", false, ""};
   std::string hidden;
-  for (const LayerKind kind :
-       {LayerKind::pressure, LayerKind::vorticity, LayerKind::speed, LayerKind::velocity}) {
+  for (const LayerKind kind : {LayerKind::pressure, LayerKind::vorticity, LayerKind::speed,
+                               LayerKind::temperature, LayerKind::velocity}) {
     bool listed = false, atStart = false;
     for (const LayerSpec& layer : spec.view.layers) {
       listed |= layer.kind == kind;
@@ -20,11 +20,14 @@ PlanLine fieldsInPictures(const SceneSpec& spec) {
     auto add = [&](std::string& text, const char* how) {
       text += (text.empty() ? "" : ", ") + std::string(layerName(kind)) + how;
     };
-    if (spec.hasFluid && canShow(spec, kind)) {
+    const bool there = kind == LayerKind::temperature ? spec.temperature.named : spec.hasFluid;
+    if (there && canShow(spec, kind)) {
       line.modelled = true;
       add(line.why, atStart ? "" : listed ? " (when an event shows it)" : " (if an event adds it)");
     } else if (listed) {
-      add(hidden, spec.hasFluid ? " is hidden, and no event shows it" : " needs a fluid");
+      add(hidden, there           ? " is hidden, and no event shows it"
+                  : spec.hasFluid ? " is not modelled"
+                                  : " needs a fluid");
     }
   }
   if (!line.modelled) line.why = hidden.empty() ? "no layer shows one" : hidden;
@@ -47,8 +50,8 @@ Plan planOf(const SceneSpec& spec) {
   auto line = [&](const char* stage, bool modelled, const char* yes, const char* no) {
     plan.lines.push_back({stage, modelled, modelled ? yes : no});
   };
-  line("fluid", needs.fluid, "the scene names a fluid, smoke or an inflow",
-       "no fluid, smoke or inflow is named");
+  line("fluid", needs.fluid, "the scene names a fluid, smoke, a temperature or an inflow",
+       "no fluid, smoke, temperature or inflow is named");
   line("pressure projection", needs.fluid, "an incompressible fluid", "no fluid");
   line("viscosity", needs.parts.viscous, "fluid.viscosity", "fluid.viscosity is 0");
   line("vorticity confinement", needs.parts.confined, "fluid.vorticity", "fluid.vorticity is 0");
@@ -56,6 +59,11 @@ Plan planOf(const SceneSpec& spec) {
        needs.parts.viscous ? "the viscosity does it" : "no solid has drag");
   line("smoke", needs.smoke, "sources or bursts", "no source and no burst");
   line("buoyancy", needs.buoyancy, "smoke.buoyancy", needs.smoke ? "smoke.buoyancy is 0" : "no smoke");
+  line("temperature", needs.heat, "temperature", "no temperature is named");
+  line("diffusion of heat", needs.heatDiffuses, "temperature.diffusivity",
+       needs.heat ? "temperature.diffusivity is 0" : "no temperature");
+  line("buoyancy of heat", needs.heatRises, "temperature.expansion and gravity",
+       needs.heat ? "no gravity, or temperature.expansion is 0" : "no temperature");
   line("driven sources", needs.sourcesDrive, "a source with a velocity", "no source has a velocity");
   line("solids on the grid", needs.fluid && plan.solids > 0,
        needs.movingSolids ? "anew when one moves" : "once: none moves", "no solids in a fluid");
@@ -72,6 +80,8 @@ Plan planOf(const SceneSpec& spec) {
     if (needs.parts.forced) fields += 2;
     if (needs.parts.confined) fields += 2;
     if (needs.parts.viscous) fields += 10;
+    if (needs.heat) fields += 9;
+    if (needs.heatDiffuses) fields += 8;
     if (needs.smoke) fields += 3.0 * plan.smokeColors + 6 + static_cast<double>(spec.smoke.sources.size());
   }
   plan.memoryMb = fields * 4 * (plan.nx + 32.0) * (plan.ny + 8.0) / (1024 * 1024);

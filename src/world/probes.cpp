@@ -55,8 +55,8 @@ std::vector<Outline> ProbeSet::regionNow(const Probe& probe, const SolidScripts&
   return region;
 }
 
-void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* smoke, double pressureScale,
-                    const SolidScripts& solids, std::vector<ProbeFigures>& out) {
+void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* smoke, const HeatStage* heat,
+                    double pressureScale, const SolidScripts& solids, std::vector<ProbeFigures>& out) {
   const Grid& grid = boundary.grid;
   const int nx = grid.nx, ny = grid.ny;
   out.clear();
@@ -72,6 +72,8 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
       for (int c = 0; smoke && c < smoke->channels(); ++c) sum += smoke->value(c)(i, j);
       return sum;
     };
+    auto warmthAt = [&](int i, int j) { return heat ? heat->at(i, j) : 0; };
+    auto warmthOpen = [&](int i, int j) { return heat && heat->isOpen(i, j) ? 1 : 0; };
     if (probe.spec.at) {
       const Vec2 p = pointNow(probe, solids);
       const double x = p.x / grid.h, y = p.y / grid.h;
@@ -79,11 +81,12 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
       figures.velocity.y = interpolated(x - 0.5, y, nx, ny + 1, fluid->v(), boundary.openY);
       figures.pressure =
           pressureScale * interpolated(x - 0.5, y - 0.5, nx, ny, fluid->phi(), boundary.volume);
+      figures.temperature = interpolated(x - 0.5, y - 0.5, nx, ny, warmthAt, warmthOpen);
       figures.smoke = interpolated(x - 0.5, y - 0.5, nx, ny, smokeAt, boundary.volume);
     } else {
       if (share_.empty()) share_ = Field(nx, ny);
       coverShare(grid, regionNow(probe, solids), share_);
-      double area = 0, u = 0, v = 0, pressure = 0, mass = 0;
+      double area = 0, u = 0, v = 0, pressure = 0, mass = 0, warmth = 0;
       for (int j = 0; j < ny; ++j)
         for (int i = 0; i < nx; ++i) {
           const double open = boundary.volume(i, j), part = std::min<double>(share_(i, j), open);
@@ -93,11 +96,13 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
           v += part * 0.5 * (fluid->v()(i, j) + fluid->v()(i, j + 1));
           pressure += part * fluid->phi()(i, j);
           mass += part * smokeAt(i, j);
+          warmth += part * warmthAt(i, j);
         }
       if (area > 0) {
         figures.velocity = {u / area, v / area};
         figures.pressure = pressureScale * pressure / area;
         figures.smoke = mass / area;
+        figures.temperature = warmth / area;
       }
       figures.mass = mass * grid.h * grid.h;
     }

@@ -6,6 +6,7 @@
 #include "fluid/smoke.h"
 #include "scene/spec.h"
 #include "world/figures.h"
+#include "world/heat_stage.h"
 #include "world/snapshot.h"
 #include "world/solid_scripts.h"
 
@@ -15,9 +16,10 @@ class ProbeSet {
  public:
   ProbeSet(const std::vector<ProbeSpec>& specs, double tolerance);
 
-  /// Reads all probes. `pressureScale`: Pa for one unit of phi. `fluid` and `smoke` may be null.
-  void read(const Boundary& boundary, const Fluid* fluid, const Smoke* smoke, double pressureScale,
-            const SolidScripts& solids, std::vector<ProbeFigures>& out);
+  /// Reads all probes. `pressureScale`: Pa for one unit of phi. `fluid`, `smoke` and `heat` may be
+  /// null.
+  void read(const Boundary& boundary, const Fluid* fluid, const Smoke* smoke, const HeatStage* heat,
+            double pressureScale, const SolidScripts& solids, std::vector<ProbeFigures>& out);
   void capture(const SolidScripts& solids, std::vector<ProbePicture>& out) const;
   bool empty() const { return probes_.empty(); }
 

@@ -55,6 +55,15 @@ double reach(const Snapshot& snapshot, const Field& field, std::vector<float>& s
   return quantile(scratch, 0.999);
 }
 
+// What a share of the open cells is colder than.
+double warmth(const Snapshot& snapshot, double share, std::vector<float>& scratch) {
+  scratch.clear();
+  for (int j = 0; j < snapshot.grid.ny; ++j)
+    for (int i = 0; i < snapshot.grid.nx; ++i)
+      if (snapshot.open(i, j) > 0.5f) scratch.push_back(snapshot.temperature(i, j));
+  return quantile(scratch, share);
+}
+
 double speedReach(const Snapshot& snapshot, std::vector<float>& scratch) {
   scratch.clear();
   for (int j = 0; j < snapshot.grid.ny; ++j)
@@ -69,6 +78,7 @@ double speedReach(const Snapshot& snapshot, std::vector<float>& scratch) {
 // What each frame reaches in which the field is shown.
 struct Reaches {
   std::vector<float> pressure, vorticity, speed;
+  std::vector<float> coldest, warmest;
 };
 
 void watchFilm(const SceneDocument& document, const SceneSpec& spec, int threads,
@@ -84,6 +94,10 @@ void watchFilm(const SceneDocument& document, const SceneSpec& spec, int threads
       reaches.pressure.push_back(static_cast<float>(reach(snapshot, snapshot.pressure, scratch)));
     if (snapshot.shows(LayerKind::vorticity))
       reaches.vorticity.push_back(static_cast<float>(reach(snapshot, snapshot.vorticity, scratch)));
+    if (snapshot.shows(LayerKind::temperature) && !snapshot.temperature.empty()) {
+      reaches.coldest.push_back(static_cast<float>(warmth(snapshot, 0.001, scratch)));
+      reaches.warmest.push_back(static_cast<float>(warmth(snapshot, 0.999, scratch)));
+    }
     if (snapshot.shows(LayerKind::speed) || snapshot.shows(LayerKind::velocity))
       reaches.speed.push_back(static_cast<float>(speedReach(snapshot, scratch)));
     if (eachFrame) eachFrame(frame, frames);
@@ -129,7 +143,9 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
   const bool pressure = wantsRange(spec, LayerKind::pressure, ranges.pressure);
   const bool vorticity = wantsRange(spec, LayerKind::vorticity, ranges.vorticity);
   const bool speed = wantsRange(spec, LayerKind::speed, ranges.speed) || wantsArrowScale(spec);
-  if (!spec.hasFluid || !(pressure || vorticity || speed)) return ranges;
+  const bool temperature =
+      wantsRange(spec, LayerKind::temperature, ranges.temperature) && spec.temperature.named;
+  if (!spec.hasFluid || !(pressure || vorticity || speed || temperature)) return ranges;
 
   Reaches reaches;
   try {
@@ -144,6 +160,14 @@ FilmRanges findRanges(const SceneDocument& document, int threads,
   settle(reaches.pressure, pressure, ranges.pressure, true);
   settle(reaches.vorticity, vorticity, ranges.vorticity, true);
   settle(reaches.speed, speed, ranges.speed, false);
+  if (temperature && !reaches.coldest.empty()) {
+    const double low = quantile(reaches.coldest, 0.05), high = quantile(reaches.warmest, 0.95);
+    // To tenths of about the span; a temperature that is the same everywhere is the middle of one degree.
+    const double unit = high > low ? niceCeiling(high - low) / 10 : 1;
+    ranges.temperature = {unit * std::floor(low / unit + 1e-6), unit * std::ceil(high / unit - 1e-6)};
+    if (!(ranges.temperature[0] < ranges.temperature[1]))
+      ranges.temperature = {low - 0.5 * unit, low + 0.5 * unit};
+  }
   return ranges;
 }
 

@@ -10,11 +10,12 @@
 namespace smokebox {
 
 struct FilmRanges {
-  std::array<double, 2> pressure{-1, 1}, vorticity{-1, 1}, speed{0, 1};
+  std::array<double, 2> pressure{-1, 1}, vorticity{-1, 1}, speed{0, 1}, temperature{0, 1};
   void put(Snapshot& snapshot) const {
     snapshot.pressureRange = pressure;
     snapshot.vorticityRange = vorticity;
     snapshot.speedRange = speed;
+    snapshot.temperatureRange = temperature;
   }
 };
 

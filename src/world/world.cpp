@@ -57,6 +57,8 @@ void World::step() {
     clock_.stage("project");
     if (smoke_) smoke_->transport(boundary_, *fluid_, dt);
     clock_.stage("smoke");
+    if (heat_) carryHeat();
+    clock_.stage("heat");
   }
   ++stepCount_;
   if (options_.figures) recordFigures();
@@ -80,6 +82,7 @@ void World::buildFluid() {
   onGrid_.cover(solids_.moving(), true, boundary_);
   fluid_.emplace(boundary_, needs_.parts, pool_);
   if (needs_.smoke) smoke_.emplace(spec_, boundary_, kOutlineTolerance * grid.h, pool_);
+  if (needs_.heat) heat_.emplace(spec_, boundary_, needs_.heatDiffuses, pool_);
 
   const auto& start = spec_.fluid.velocity;
   for (int j = 0; j <= grid.ny; ++j)
@@ -161,6 +164,7 @@ void World::adoptSettings(const SetAction& action) {
   if (!fluid_) return;
   if (smoke_ && concerns(action.path, "smoke.sources")) smoke_->placeSources(spec_, boundary_);
   setWalls(time() + spec_.time.step);
+  if (heat_ && concerns(action.path, "temperature.walls")) heat_->setSides(spec_, boundary_, time());
   onGrid_.cover(solids_.moving(), false, boundary_);
 }
 
@@ -183,17 +187,20 @@ void World::coverGrid(bool shapesMoved) {
   if (shapesMoved) fluid_->prepareUncovering(boundary_);
   onGrid_.cover(solids_.moving(), shapesMoved, boundary_);
   if (shapesMoved) fluid_->boundaryChanged(boundary_);
+  if (shapesMoved && heat_) heat_->boundaryChanged(boundary_);
   solidsMovedBefore_ = shapesMoved;  // one more time after the last move, for the velocities to become 0
 }
 
 void World::addForces() {
   const Grid& grid = boundary_.grid;
-  fluid_->beginForces();
+  fluid_->beginForces(boundary_);
   if (spec_.fluid.vorticity != 0)
     fluid_->addConfinement(boundary_, spec_.fluid.vorticity, std::min(grid.width(), grid.height()) / 256);
   if (smoke_ && spec_.smoke.buoyancy != 0)
     smoke_->addBuoyancy(boundary_, spec_.smoke.buoyancy, spec_.gravity, fluid_->accelerationU(),
                         fluid_->accelerationV());
+  if (heat_ && needs_.heatRises)
+    heat_->addBuoyancy(spec_, boundary_, fluid_->accelerationU(), fluid_->accelerationV());
   for (const ActiveForce& force : forces_) {
     const auto ax = static_cast<float>(0.5 * force.acceleration.x),
                ay = static_cast<float>(0.5 * force.acceleration.y);
@@ -227,6 +234,16 @@ void World::projectFluid() {
   }
 }
 
+void World::carryHeat() {
+  if (heat_->sidesDependOnTime()) heat_->setSides(spec_, boundary_, time() + spec_.time.step);
+  const Heat::Result result =
+      heat_->transport(boundary_, *fluid_, spec_.temperature.diffusivity, spec_.time.step);
+  if (!result.finite) fail("the temperature is not a number", "try a smaller time.step");
+  if (!result.converged)
+    fail("the diffusion of heat did not converge",
+         "try a smaller time.step or a smaller temperature.diffusivity");
+}
+
 void World::fail(const std::string& what, const std::string& hint) const {
   char place[64];
   std::snprintf(place, sizeof place, "step %ld (t = %.4g s): ", stepCount_ + 1, time() + spec_.time.step);
@@ -253,7 +270,7 @@ void World::recordFigures() {
     figures_.smoke = {totals.mass, totals.emitted, totals.left, totals.min, totals.max};
   }
   if (!probes_.empty())
-    probes_.read(boundary_, fluid(), smoke_ ? &smoke_->smoke() : nullptr, pressureScale, solids_,
+    probes_.read(boundary_, fluid(), smoke_ ? &smoke_->smoke() : nullptr, heat(), pressureScale, solids_,
                  figures_.probes);
 }
 
@@ -293,6 +310,7 @@ std::uint64_t World::stateHash() const {
   }
   if (smoke_)
     for (int c = 0; c < smoke_->smoke().channels(); ++c) add(smoke_->smoke().value(c), grid.nx, grid.ny);
+  if (heat_) add(heat_->heat().value(), grid.nx, grid.ny);
   for (int k = 0; k < solids_.count(); ++k) hash.update(&solids_.pose(k), sizeof(Pose));
   return hash.value();
 }
@@ -303,6 +321,7 @@ std::size_t World::bytes() const {
     bytes += fluid_->bytes() + boundary_.openX.bytes() + boundary_.openY.bytes() + boundary_.volume.bytes() +
              boundary_.wallU.bytes() + boundary_.wallV.bytes();
   if (smoke_) bytes += smoke_->bytes();
+  if (heat_) bytes += heat_->bytes();
   return bytes;
 }
 

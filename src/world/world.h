@@ -13,6 +13,7 @@
 #include "scene/document.h"
 #include "world/event_schedule.h"
 #include "world/figures.h"
+#include "world/heat_stage.h"
 #include "world/needs.h"
 #include "world/probes.h"
 #include "world/smoke_stage.h"
@@ -46,13 +47,15 @@ class World {
   /// Copies what the layers need that are shown now; the snapshot's view has only these.
   void capture(Snapshot& snapshot) const;
 
-  /// 64-bit hash of the whole state (velocity, pressure, smoke, poses); equal for any number of threads.
+  /// 64-bit hash of the whole state (velocity, pressure, smoke, temperature, poses); equal for any number of
+  /// threads.
   std::uint64_t stateHash() const;
 
   /// For tests: null in a scene without a fluid.
   const Fluid* fluid() const { return fluid_ ? &*fluid_ : nullptr; }
   const Boundary& boundary() const { return boundary_; }
   const SmokeStage* smoke() const { return smoke_ ? &*smoke_ : nullptr; }
+  const HeatStage* heat() const { return heat_ ? &*heat_ : nullptr; }
   const SolidScripts& solids() const { return solids_; }
   std::size_t bytes() const;
 
@@ -76,7 +79,9 @@ class World {
   void coverGrid(bool shapesMoved);
   void addForces();
   void projectFluid();
+  void carryHeat();
   void recordFigures();
+  void captureTemperature(Field& temperature) const;
   void capturePressure(Field& pressure) const;
   void captureVelocity(bool vorticity, Snapshot& snapshot) const;
   [[noreturn]] void fail(const std::string& what, const std::string& hint) const;
@@ -94,6 +99,7 @@ class World {
   SolidsOnGrid onGrid_;
   std::optional<Fluid> fluid_;
   std::optional<SmokeStage> smoke_;
+  std::optional<HeatStage> heat_;
   ProbeSet probes_;
   std::vector<ActiveForce> forces_;
   std::vector<ActiveCaption> captions_;

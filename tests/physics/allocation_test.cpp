@@ -71,5 +71,17 @@ solids: [{name: disk, shape: {circle: {radius: 0.1}}, position: [0.5, 0.5]}]
   EXPECT_EQ(allocationsInSteps(channel, 1), 0);
 }
 
+TEST(Allocation, HeatDoesWithout) {
+  // Truth: none, with a wall whose temperature changes, for one thread and two.
+  const std::string heated = R"yaml(domain: {size: [2, 1], resolution: 64}
+gravity: [0, -9.81]
+time: {duration: 100, step: 1/60}
+output: {fps: 1}
+temperature: {diffusivity: 1e-3, start: "y > 0.5 ? 1 : 0", expansion: 0.1, walls: {bottom: "3 + sin(t)", top: 0}}
+solids: [{name: disk, shape: {circle: {radius: 0.1}}, position: [0.5, 0.5]}]
+)yaml";
+  for (const int threads : {1, 2}) EXPECT_EQ(allocationsInSteps(heated, threads), 0);
+}
+
 }  // namespace
 }  // namespace smokebox

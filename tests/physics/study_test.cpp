@@ -122,6 +122,17 @@ TEST(Study, FluidAtRestStaysThere) {
   EXPECT_LT(outcomeOf("rest-heavy-smoke", 64).metrics[0].value, 1e-4);
 }
 
+TEST(Study, HeatedCavitiesOf64CellsAreRight) {
+  // Truth: the Nusselt number and the largest velocities within half of a per cent, at Ra 1e5 of one.
+  for (const char* name : {"heated-cavity-ra1e3", "heated-cavity-ra1e4", "heated-cavity-ra1e5"}) {
+    const StudyOutcome outcome = outcomeOf(name, 64);
+    const double most = std::string(name).ends_with("1e5") ? 0.01 : 0.005;
+    for (const char* metric : {"Nusselt number", "umax", "vmax"})
+      EXPECT_LT(outcome.metric(metric).error, most) << metric;
+    EXPECT_LT(outcome.metric("heat balance").error, 2e-5);
+  }
+}
+
 TEST(Study, AnOrderIsFittedExactlyToAPowerLaw) {
   // Truth: errors of 3 n^-2 have the order 2.
   EXPECT_NEAR(fittedOrder({8, 16, 64}, {3.0 / 64, 3.0 / 256, 3.0 / 4096}), 2, 1e-12);

@@ -46,6 +46,29 @@ TEST(SceneErrors, APlainSceneHasNone) {
   EXPECT_EQ(problemsOf(kDomain), "");
 }
 
+TEST(SceneErrors, TemperaturesThatMakeNoSenseAreReported) {
+  // Truth: unknown keys, periodic sides, numbers that are none; and a warning for what has no effect.
+  const std::string scene = kDomain + "gravity: [0, -1]\n";
+  expectFault(scene + "temperature: {diffusion: 1}\n", {"s.yaml:3:15", "diffusion", "diffusivity"});
+  expectFault(scene + "temperature: {diffusivity: -1}\n", {"s.yaml:3:28", "0 or larger"});
+  expectFault(scene + "temperature: {diffusivity: 1, walls: {front: 1}}\n", {"s.yaml:3:39", "front"});
+  expectFault(
+      scene + "walls: {left: periodic, right: periodic}\ntemperature: {diffusivity: 1, walls: {left: 1}}\n",
+      {"s.yaml:4:45", "periodic"});
+  expectFault(scene + "temperature: {start: 1/(x-x)}\n", {"s.yaml:3:22", "temperature.start", "finite"});
+  expectFault(scene + "temperature: {diffusivity: 1, walls: {left: 1/(t-t)}}\n",
+              {"s.yaml:3:45", "temperature.walls.left", "finite"});
+  expectFault(scene + "temperature: {walls: {left: 1}}\n", {"s.yaml:3:29", "warning", "warms nothing"});
+  expectFault(kDomain + "temperature: {start: x}\n", {"s.yaml:2:", "warning", "gravity"});
+  expectFault(scene + "temperature: {}\nevents: [{at: 1, set: {temperature.start: 1}}]\n",
+              {"s.yaml:4:", "cannot change during a run"});
+  expectFault(scene + "fluid: {}\nevents: [{at: 1, set: {temperature.expansion: 1}}]\n",
+              {"s.yaml:4:", "no temperature"});
+  EXPECT_EQ(problemsOf(scene +
+                       "temperature: {start: 20 + y, reference: 20, diffusivity: 1e-3, walls: {left: 1}}\n"),
+            "");
+}
+
 TEST(SceneErrors, FilesThatCannotBeReadAreInputOutputErrors) {
   // Truth: status 4 for what the file system refuses.
   for (const char* name : {"/nowhere/at/all.yaml", "/tmp"}) {
@@ -335,7 +358,7 @@ TEST(SceneErrors, EmptyItemsOfListsAreNamed) {
 
 TEST(SceneErrors, WhatThisVersionLacksIsNamed) {
   // Truth: keys of the format without code behind them are never passed over in silence.
-  for (const char* key : {"bodies", "springs", "joints", "particles", "cloth", "temperature"})
+  for (const char* key : {"bodies", "springs", "joints", "particles", "cloth"})
     expectFault(kDomain + key + ": []\n",
                 {"s.yaml:2:1: `" + std::string(key) + "` is not supported by this version"});
   expectFault(kDomain + "events:\n- {at: 1, impulse: {body: a, value: [0, 1]}}\n",
