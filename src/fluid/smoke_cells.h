@@ -18,8 +18,8 @@ struct SmokeCells {
   int cell(int i, int j) const { return j * nx + i; }
 
   /// The cell behind a face; -1 beyond a side that is not periodic.
-  int neighbour(int cell, int face) const {
-    int x = i(cell), y = j(cell);
+  int neighbour(int cell, int face) const { return neighbour(i(cell), j(cell), face); }
+  int neighbour(int x, int y, int face) const {
     switch (face) {
       case 0:
         if (--x < 0) x = periodicX ? nx - 1 : -1;

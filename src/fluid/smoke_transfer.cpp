@@ -9,6 +9,8 @@ constexpr int kReachOfClosed = 128;              // cells looked at
 constexpr int kReachOfPairs[] = {4, 12, 40};     // of cells that close
 constexpr int kReachOfExchange[] = {4, 12, 40};  // the nearest partners first
 constexpr int kReachOfFlows[] = {40, 800};
+constexpr int kBarrenPart =
+    4;  // of the cells that a wide search has seen: those that need no search of their own
 constexpr int kReachOfDeficit = 12;
 constexpr float kMostTaken = 0.95f;  // of what a cell carries
 constexpr int kWindow = 2;           // cells to either side in which two sides are told apart
@@ -16,6 +18,8 @@ constexpr int kWindow = 2;           // cells to either side in which two sides 
 float volumeOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c) {
   return (*geometry.volume)(cells.i(c), cells.j(c));
 }
+
+float smallest(float a, float b, float c) { return std::min(a, std::min(b, c)); }
 
 float openOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c, int face) {
   return cells.atFace(*geometry.openX, *geometry.openY, c, face);
@@ -59,7 +63,9 @@ struct Window {
 std::size_t TransferPlan::bytes() const {
   return (handed_.capacity() + exchanged_.capacity()) * sizeof(SmokeTransfer) + passed_.capacity() +
          (excess_.capacity() + content_.capacity()) * sizeof(float) +
-         (seen_.capacity() + cameFrom_.capacity() + found_.capacity() + path_.capacity()) * sizeof(int);
+         (seen_.capacity() + cameFrom_.capacity() + barren_.capacity() + queue_.capacity() +
+          path_.capacity()) *
+             sizeof(int);
 }
 
 void TransferPlan::clear() {
@@ -75,25 +81,26 @@ void TransferPlan::reserve(const SmokeCells& cells) {
   passed_.assign(cells.count(), 0);
   seen_.assign(cells.count(), 0);
   cameFrom_.assign(cells.count(), 0);
+  barren_.assign(cells.count(), 0);
 }
 
-void TransferPlan::search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most) {
-  found_.clear();
-  ++search_;
-  seen_[from] = search_;
-  found_.push_back(from);
-  for (std::size_t head = 0; head < found_.size() && static_cast<int>(found_.size()) <= most; ++head) {
-    const int cell = found_[head];
+template <class Visit>
+void TransferPlan::search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most,
+                          Visit&& visit) {
+  queue_.assign(1, from);
+  seen_[from] = ++search_;
+  for (std::size_t head = 0; head < queue_.size() && static_cast<int>(queue_.size()) <= most; ++head) {
+    const int cell = queue_[head], i = cells.i(cell), j = cells.j(cell);
     for (int face = 0; face < 4; ++face) {
-      if (geometry && !(openOf(cells, *geometry, cell, face) > 0)) continue;
-      const int next = cells.neighbour(cell, face);
+      if (geometry && !(SmokeCells::atFace(*geometry->openX, *geometry->openY, i, j, face) > 0)) continue;
+      const int next = cells.neighbour(i, j, face);
       if (next < 0 || seen_[next] == search_) continue;
       seen_[next] = search_;
       cameFrom_[next] = cell;
-      found_.push_back(next);
+      queue_.push_back(next);
+      if (visit(next)) return;
     }
   }
-  found_.erase(found_.begin());
 }
 
 int TransferPlan::nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region) {
@@ -102,10 +109,12 @@ int TransferPlan::nearestOpen(const SmokeCells& cells, const SmokeGeometry& geom
     return volumeOf(cells, geometry, c) > 0 && (region < 0 || regionOf(cells, geometry, c) == region);
   };
   if (fits(from)) return from;
-  search(cells, from, nullptr, kReachOfClosed);
-  for (int cell : found_)
-    if (fits(cell)) return cell;
-  return -1;
+  int found = -1;
+  search(cells, from, nullptr, kReachOfClosed, [&](int cell) {
+    if (fits(cell)) found = cell;
+    return found >= 0;
+  });
+  return found;
 }
 
 // Moves a volume and notes which share of the smoke goes with it.
@@ -169,22 +178,23 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
     };
     int nearest = -1;
     for (int reach : kReachOfPairs) {
-      search(cells, c, &before, reach);
-      for (int other : found_) {
-        if (content_[c] <= kTolerance) break;
-        if (!takes(other)) continue;
+      search(cells, c, &before, reach, [&](int other) {
+        if (!takes(other)) return false;
         if (nearest < 0) nearest = other;
+        if (content_[c] <= kTolerance) return true;
         const float moved = std::min(content_[c], -excess_[other]);
         if (moved > kTolerance) give(c, other, moved, false);
-      }
+        return content_[c] <= kTolerance;
+      });
       if (content_[c] <= kTolerance && nearest >= 0) break;
     }
     // Then whatever lies between, if it is told apart what is on which side.
     for (const SmokeGeometry* through : {&before, static_cast<const SmokeGeometry*>(nullptr)}) {
       if (nearest >= 0 || (!through && region < 0)) break;
-      search(cells, c, through, kReachOfClosed);
-      for (int other : found_)
-        if (nearest < 0 && takes(other)) nearest = other;
+      search(cells, c, through, kReachOfClosed, [&](int other) {
+        if (takes(other)) nearest = other;
+        return nearest >= 0;
+      });
     }
     if (nearest < 0) {
       const int heir = region < 0 ? -1 : match.heir(region);
@@ -240,31 +250,33 @@ void TransferPlan::route(const SmokeCells& cells, int from, int to, float volume
 // with less than half of their volume draw on others.
 void TransferPlan::correctFlows(const SmokeCells& cells, const std::vector<int>& cut,
                                 const SmokeGeometry& after, Field& courantX, Field& courantY) {
+  ++barrenNow_;
   for (const int reach : kReachOfFlows)
     for (int c : cut) {
-      if (volumeOf(cells, after, c) <= 0 || excess_[c] <= kTolerance) continue;
-      search(cells, c, &after, reach);
-      for (int other : found_) {
+      if (volumeOf(cells, after, c) <= 0 || excess_[c] <= kTolerance || barren_[c] == barrenNow_) continue;
+      search(cells, c, &after, reach, [&](int other) {
         const float moved = std::min(excess_[c], -excess_[other]);
-        if (volumeOf(cells, after, other) > 0 && moved > kTolerance)
+        if (moved > kTolerance && volumeOf(cells, after, other) > 0)
           route(cells, c, other, moved, courantX, courantY);
-        if (excess_[c] <= kTolerance) break;
-      }
+        return excess_[c] <= kTolerance;
+      });
+      // Where a wide search was in vain, the cells around need not try.
+      if (excess_[c] <= kTolerance || reach != kReachOfFlows[1]) continue;
+      for (std::size_t k = 0; k < queue_.size() / kBarrenPart; ++k) barren_[queue_[k]] = barrenNow_;
     }
   for (int c : cut) {
     const float open = volumeOf(cells, after, c);
     float lacks = -0.5f * open - excess_[c];
     if (open <= 0 || lacks <= kTolerance) continue;
-    search(cells, c, &after, kReachOfDeficit);
-    for (int other : found_) {
+    search(cells, c, &after, kReachOfDeficit, [&](int other) {
       const float has = volumeOf(cells, after, other);
       const float moved = std::min(lacks, excess_[other] + 0.5f * has);
-      if (has <= 0 || moved <= kTolerance) continue;
+      if (has <= 0 || moved <= kTolerance) return false;
       route(cells, c, other, -moved, courantX, courantY);
       drawnOn_.push_back(other);
       lacks -= moved;
-      if (lacks <= kTolerance) break;
-    }
+      return lacks <= kTolerance;
+    });
   }
 }
 
@@ -299,25 +311,22 @@ void TransferPlan::exchange(const SmokeCells& cells, const std::vector<int>& nod
   for (int reach : kReachOfExchange)
     for (int c : nodes) {
       if (volumeOf(cells, after, c) <= 0 || -excess_[c] <= kTolerance) continue;
-      search(cells, c, &after, reach);
-      for (int other : found_) {
-        if (volumeOf(cells, after, other) <= 0) continue;
-        const float moved = std::min({-excess_[c], excess_[other], kMostTaken * content_[other]});
-        if (moved > kTolerance) send(other, c, moved);
-        if (-excess_[c] <= kTolerance) break;
-      }
+      search(cells, c, &after, reach, [&](int other) {
+        const float moved = smallest(-excess_[c], excess_[other], kMostTaken * content_[other]);
+        if (moved > kTolerance && volumeOf(cells, after, other) > 0) send(other, c, moved);
+        return -excess_[c] <= kTolerance;
+      });
     }
   // A cell that carries less than half of what it holds draws on others.
   for (int c : nodes) {
     const float half = 0.5f * volumeOf(cells, after, c);
     if (half <= 0 || half - content_[c] <= kTolerance) continue;
-    search(cells, c, &after, kReachOfExchange[1]);
-    for (int other : found_) {
-      const float moved =
-          std::min(half - content_[c], content_[other] - 0.5f * volumeOf(cells, after, other));
-      if (volumeOf(cells, after, other) > 0 && moved > kTolerance) send(other, c, moved);
-      if (half - content_[c] <= kTolerance) break;
-    }
+    search(cells, c, &after, kReachOfExchange[1], [&](int other) {
+      const float has = volumeOf(cells, after, other);
+      const float moved = std::min(half - content_[c], content_[other] - 0.5f * has);
+      if (has > 0 && moved > kTolerance) send(other, c, moved);
+      return half - content_[c] <= kTolerance;
+    });
   }
   auto settle = [&](int c) {
     const float open = volumeOf(cells, after, c);

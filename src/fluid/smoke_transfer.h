@@ -58,9 +58,10 @@ class TransferPlan {
 
  private:
   void reserve(const SmokeCells& cells);
-  /// Cells by distance from `from`, not itself, at most `most`, into found_; through the faces that are open
-  /// in `geometry`, or through all.
-  void search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most);
+  /// Calls visit(cell) for cells by distance from `from`, not itself, until it returns true or about `most`
+  /// are found; through the faces that are open in `geometry`, or through all.
+  template <class Visit>
+  void search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most, Visit&& visit);
   bool passed(const SmokeCells& cells, int cell, const SmokeGeometry& before, const SmokeGeometry& after);
   void give(int from, int to, float volume, bool all);
   void send(int from, int to, float volume);
@@ -71,9 +72,10 @@ class TransferPlan {
   std::vector<SmokeTransfer> handed_, exchanged_;
   std::vector<float> excess_, content_;       // by cell; 0 and 1 outside the list
   std::vector<std::uint8_t> passed_;          // by cell: a thin wall has passed it in this step
-  std::vector<int> seen_, found_, cameFrom_;  // cameFrom_: by cell, the cell before it
+  std::vector<int> seen_, queue_, cameFrom_;  // cameFrom_: by cell, the cell before it
   std::vector<int> path_, drawnOn_;
-  int search_ = 0;
+  std::vector<int> barren_;  // by cell: the last hand-over in which nothing was to be found around it
+  int search_ = 0, barrenNow_ = 0;
 };
 
 }  // namespace smokebox
