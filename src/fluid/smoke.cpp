@@ -26,6 +26,7 @@ struct Channel {
   Field mass, value;
   Quantum quantum;
   float highest = 0;  // largest value
+  float swept = 0;    // the same after the sweeps
   Activity active;
   double emitted = 0, left = 0;  // in cell areas
 };
@@ -45,8 +46,8 @@ struct Smoke::Impl {
   Sweeper sweeper;
   MassSpread spread;
   std::vector<Channel> channels;
-  Field massOut, valueOut, volumeA, volumeB;
-  Activity activeOut;
+  Field massOut, valueOut;
+  Activity activeOut, anyActive;
   std::vector<Trapped> trapped;
   std::vector<float> clusterMass, clusterVolume;
   double cellArea;
@@ -59,8 +60,8 @@ struct Smoke::Impl {
         channels(count),
         massOut(b.grid.nx, b.grid.ny),
         valueOut(b.grid.nx, b.grid.ny),
-        volumeA(b.grid.nx, b.grid.ny, 1),
         activeOut(b.grid.nx, b.grid.ny),
+        anyActive(b.grid.nx, b.grid.ny),
         cellArea(b.grid.h * b.grid.h) {
     for (Channel& c : channels) {
       c.mass = Field(b.grid.nx, b.grid.ny);
@@ -78,10 +79,12 @@ struct Smoke::Impl {
   void move(int channel, const std::vector<SmokeTransfer>& transfers);
   void renew(Channel& c, int cell, const Field& volume, float highest);
   void release(const Boundary& b);
-  void shareValues(Channel& c, const Field& volume);
-  void donorClusters(const Channel& c, Axis axis, const Field& volume);
+  void shareValues(Channel& c, const SweptVolumes& volume);
+  void donorClusters(const Channel& c, Axis axis, const SweptVolumes& volume);
   void fillMargins(Channel& c, Axis axis);
   void endClusters(Channel& c, const Boundary& b, float highest);
+  void sweep(int channel, Axis axis, const SweptVolumes& volume, const Field* divisor);
+  void end(int channel, const Boundary& b);
   void touch(Channel& c, int cell) {
     c.active.at(volumes.cells().i(cell) / Activity::kStrip, volumes.cells().j(cell)) = 1;
   }
@@ -194,14 +197,14 @@ void Smoke::Impl::renew(Channel& c, int cell, const Field& volume, float highest
 }
 
 // Values of the cells that are not full, from mass and volume; one for each cluster.
-void Smoke::Impl::shareValues(Channel& c, const Field& volume) {
+void Smoke::Impl::shareValues(Channel& c, const SweptVolumes& volume) {
   const SmokeCells& cells = volumes.cells();
   const CellClusters& clusters = volumes.clusters();
   for (int k = 0; k < clusters.count(); ++k) {
     double m = 0, v = 0;
     for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
       m += c.mass(cells.i(*cell), cells.j(*cell));
-      v += volume(cells.i(*cell), cells.j(*cell));
+      v += volume.at(cells.i(*cell), cells.j(*cell));
     }
     const float value = m > 0 ? static_cast<float>(m / std::max(v, 1e-6)) : 0.0f;
     for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
@@ -212,7 +215,7 @@ void Smoke::Impl::shareValues(Channel& c, const Field& volume) {
 }
 
 // Mass and volume of each cluster after the donor fluxes of one sweep.
-void Smoke::Impl::donorClusters(const Channel& c, Axis axis, const Field& volume) {
+void Smoke::Impl::donorClusters(const Channel& c, Axis axis, const SweptVolumes& volume) {
   const SmokeCells& cells = volumes.cells();
   const CellClusters& clusters = volumes.clusters();
   const Field& courant = volumes.courant(axis);
@@ -232,7 +235,7 @@ void Smoke::Impl::donorClusters(const Channel& c, Axis axis, const Field& volume
       const float in = clean ? 0.0f : low * (low > 0 ? c.value(i - di, j - dj) : c.value(i, j));
       const float out = cleanHigh ? 0.0f : high * (high > 0 ? c.value(i, j) : c.value(i + di, j + dj));
       m += static_cast<double>(c.mass(i, j)) - (static_cast<double>(out) - in);
-      v += volume(i, j) - (high - low);
+      v += volume.at(i, j) - (high - low);
     }
     clusterMass[k] = static_cast<float>(m);
     clusterVolume[k] = static_cast<float>(v);
@@ -244,8 +247,8 @@ void Smoke::Impl::fillMargins(Channel& c, Axis axis) {
   const int nx = cells.nx, ny = cells.ny;
   const Field& courant = volumes.courant(axis);
   if (axis == Axis::x ? cells.periodicX : cells.periodicY) {
-    wrapMargin(c.mass, axis, nx, ny, false);
-    wrapMargin(c.value, axis, nx, ny, false);
+    wrapMargin(c.mass, axis, nx, ny);
+    wrapMargin(c.value, axis, nx, ny);
     return;
   }
   // Walls and outflows continue the last value, inflows bring clean air.
@@ -337,89 +340,96 @@ void Smoke::add(const Boundary& boundary, int channel, const Field& share, doubl
   c.emitted += added;
 }
 
+// One sweep of one colour; the values out are measured by `divisor`, or by the volume after the sweep.
+void Smoke::Impl::sweep(int channel, Axis axis, const SweptVolumes& volume, const Field* divisor) {
+  Channel& c = channels[channel];
+  const SmokeCells& cells = volumes.cells();
+  fillMargins(c, axis);
+  wrapActivity(c);
+  donorClusters(c, axis, volume);
+  SweepJob job;
+  job.axis = axis;
+  job.nx = cells.nx;
+  job.ny = cells.ny;
+  job.periodic = axis == Axis::x ? cells.periodicX : cells.periodicY;
+  job.courant = &volumes.courant(axis);
+  job.volume = volume;
+  job.divisor = divisor;
+  job.mass = &c.mass;
+  job.value = &c.value;
+  job.massOut = &massOut;
+  job.valueOut = &valueOut;
+  job.highest = c.highest;
+  job.quantum = c.quantum;
+  job.irregular = &volumes.irregular().faces(axis);
+  job.roots = &volumes.clusters().roots(axis);
+  job.clusterMass = clusterMass.data();
+  job.clusterVolume = clusterVolume.data();
+  job.active = &c.active;
+  job.activeOut = &activeOut;
+  const SweepResult result = sweeper.run(job, pool);
+  c.mass.swap(massOut);
+  c.value.swap(valueOut);
+  c.active.swap(activeOut);
+  if (!job.periodic) c.left += result.throughHigh - result.throughLow;
+  c.swept = result.highest;
+}
+
+// After the last sweep: what clusters share, what cells exchange, and what is above the ceiling.
+void Smoke::Impl::end(int channel, const Boundary& b) {
+  Channel& c = channels[channel];
+  const float before = c.highest;
+  c.highest = c.swept;
+  endClusters(c, b, before);
+  if (volumes.carries() && !volumes.plan().exchanged().empty()) {
+    move(channel, volumes.plan().exchanged());
+    for (const SmokeTransfer& t : volumes.plan().exchanged()) {
+      renew(c, t.from, volumes.carried(), before);
+      renew(c, t.to, volumes.carried(), before);
+    }
+  }
+  if (c.highest > before)
+    c.highest =
+        spread.run(volumes.cells(), b, volumes.carried(), before, c.quantum, c.mass, c.value, c.active);
+}
+
 void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double dt) {
   Impl& s = *impl_;
   SmokeVolumes& volumes = s.volumes;
-  volumes.prepare(b, u, v, dt, s.pool);
-  const SmokeCells& cells = volumes.cells();
+  s.anyActive.clear();
+  for (const Channel& c : s.channels) s.anyActive.add(c.active);
+  volumes.prepare(b, u, v, dt, s.anyActive, s.pool);
   for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest * volumes.mostCarried());
-
   if (volumes.moved())
     for (Trapped& t : s.trapped)
       t.region = t.region >= 0 && volumes.match().apart() ? volumes.match().heir(t.region) : -1;
-  Field& start = volumes.start();
+
+  SweptVolumes volume = volumes.swept();
   for (int k = 0; k < channels(); ++k) {
     Channel& c = s.channels[k];
     if (volumes.moved()) {
       s.move(k, volumes.plan().handedOver());
-      for (int cell : volumes.nodes()) s.renew(c, cell, start, c.highest);
+      for (int cell : volumes.nodes()) s.renew(c, cell, volumes.start(), c.highest);
     }
-    s.shareValues(c, start);
+    s.shareValues(c, volume);
   }
 
   const int passes = 2 * volumes.parts();
-  if (passes > 2 && s.volumeB.empty()) s.volumeB = Field(cells.nx, cells.ny, 1);
   for (int pass = 0; pass < passes; ++pass) {
     // x y, y x, x y, ... within a step and from step to step.
-    const bool alongY = (((pass + 1) / 2) % 2 == 1) != s.yFirst;
-    const Axis axis = alongY ? Axis::y : Axis::x;
-    const bool last = pass == passes - 1, periodic = alongY ? cells.periodicY : cells.periodicX;
-    Field& volume = pass == 0 ? start : pass % 2 ? s.volumeA : s.volumeB;
-    Field& next = pass % 2 ? s.volumeB : s.volumeA;
-    if (periodic) wrapMargin(volume, axis, cells.nx, cells.ny, false);
-    if (!last)
-      volumes.advance(axis, volume, next, s.pool);
-    else
-      volumes.settle(b, axis, volume);
-    for (int k = 0; k < channels(); ++k) {
-      Channel& c = s.channels[k];
-      if (c.highest == 0) continue;
-      s.fillMargins(c, axis);
-      s.wrapActivity(c);
-      s.donorClusters(c, axis, volume);
-      SweepJob job;
-      job.axis = axis;
-      job.nx = cells.nx;
-      job.ny = cells.ny;
-      job.periodic = periodic;
-      job.courant = &volumes.courant(axis);
-      job.volume = &volume;
-      job.divisor = last ? &volumes.measure(b) : nullptr;
-      job.mass = &c.mass;
-      job.value = &c.value;
-      job.massOut = &s.massOut;
-      job.valueOut = &s.valueOut;
-      job.highest = c.highest;
-      job.quantum = c.quantum;
-      job.irregular = &volumes.irregular().faces(axis);
-      job.roots = &volumes.clusters().roots(axis);
-      job.clusterMass = s.clusterMass.data();
-      job.clusterVolume = s.clusterVolume.data();
-      job.active = &c.active;
-      job.activeOut = &s.activeOut;
-      const SweepResult result = s.sweeper.run(job, s.pool);
-      c.mass.swap(s.massOut);
-      c.value.swap(s.valueOut);
-      c.active.swap(s.activeOut);
-      if (!periodic) c.left += result.throughHigh - result.throughLow;
-      if (!last) {
-        s.shareValues(c, next);
-      } else {
-        const float before = c.highest;
-        c.highest = result.highest;
-        s.endClusters(c, b, before);
-        if (volumes.carries() && !volumes.plan().exchanged().empty()) {
-          s.move(k, volumes.plan().exchanged());
-          for (const SmokeTransfer& t : volumes.plan().exchanged()) {
-            s.renew(c, t.from, volumes.carried(), before);
-            s.renew(c, t.to, volumes.carried(), before);
-          }
-        }
-        if (c.highest > before)
-          c.highest = s.spread.run(cells, b, volumes.carried(), before, c.quantum, c.mass, c.value, c.active);
-      }
-    }
+    const Axis axis = (((pass + 1) / 2) % 2 == 1) != s.yFirst ? Axis::y : Axis::x;
+    const bool last = pass == passes - 1;
+    if (last) volumes.settle(b, axis, volume);
+    for (int k = 0; k < channels(); ++k)
+      if (s.channels[k].highest > 0) s.sweep(k, axis, volume, last ? &volumes.measure(b) : nullptr);
+    volume.swept(axis);
+    if (last) break;
+    for (int k = 0; k < channels(); ++k)
+      if (s.channels[k].highest > 0) s.shareValues(s.channels[k], volume);
   }
+  volumes.commit(b);
+  for (int k = 0; k < channels(); ++k)
+    if (s.channels[k].highest > 0) s.end(k, b);
   s.yFirst = !s.yFirst;
   volumes.finish(b);
   if (volumes.moved() && !s.trapped.empty()) s.release(b);
@@ -461,9 +471,7 @@ std::size_t Smoke::bytes() const {
   const Impl& s = *impl_;
   std::size_t sum = s.volumes.bytes() + s.sweeper.bytes() + s.spread.bytes();
   for (const Channel& c : s.channels) sum += c.mass.bytes() + c.value.bytes();
-  for (const Field* f : {&s.massOut, &s.valueOut, &s.volumeA, &s.volumeB})
-    if (!f->empty()) sum += f->bytes();
-  return sum;
+  return sum + s.massOut.bytes() + s.valueOut.bytes();
 }
 
 }  // namespace smokebox

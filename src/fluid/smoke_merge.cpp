@@ -307,15 +307,24 @@ void IrregularFaces::find(const SmokeCells& cells, const Boundary& b, const Fiel
     const float *now = b.volume.row(j), *was = before.row(j), *has = carried.row(j);
     const float *x = b.openX.row(j), *y = b.openY.row(j), *above = b.openY.row(j + 1);
     const bool low = j > 0 || cells.periodicY, high = j < ny - 1 || cells.periodicY;
+    // Closed cells among closed cells stay as they are, and what is marked for those around them is enough.
+    auto deepInside = [&](int i) {
+      if (now[i] > 0 || was[i] > 0 || i == 0 || j == 0 || i == nx - 1 || j == ny - 1) return false;
+      const float *nowUp = b.volume.row(j + 1), *nowDown = b.volume.row(j - 1);
+      const float *wasUp = before.row(j + 1), *wasDown = before.row(j - 1);
+      return !(now[i - 1] > 0 || now[i + 1] > 0 || was[i - 1] > 0 || was[i + 1] > 0 || nowUp[i] > 0 ||
+               nowDown[i] > 0 || wasUp[i] > 0 || wasDown[i] > 0);
+    };
     for (int first = 0; first < nx; first += 16) {
       const int last = std::min(nx, first + 16);
-      float least = 1;
+      std::int32_t cutOff = 0;
+#pragma omp simd reduction(| : cutOff)
       for (int i = first; i < last; ++i)
-        least = std::min(
-            {least, now[i], was[i], has[i], 2 - has[i], x[i], low ? y[i] : 1.0f, high ? above[i] : 1.0f});
-      if (last < nx || cells.periodicX) least = std::min(least, x[last]);
-      if (least >= 1) continue;
+        cutOff |= (now[i] < 1) | (was[i] < 1) | (has[i] != 1) | (x[i] < 1) | (low & (y[i] < 1)) |
+                  (high & (above[i] < 1));
+      if (!cutOff && (x[last] >= 1 || (last == nx && !cells.periodicX))) continue;
       for (int i = first; i < last; ++i) {
+        if (deepInside(i)) continue;
         const bool left = i > 0 || cells.periodicX, right = i < nx - 1 || cells.periodicX;
         // A full cell beside a face that a solid closes: the solid drives fluid through that face.
         const bool touched =

@@ -1,6 +1,7 @@
 // What all colours of smoke share in one step: the volumes that the cells start with and that flow through
 // the faces, what the moving solids push from cell to cell, the merged cells and the faces that need care.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "base/threads.h"
@@ -25,10 +26,14 @@ class SmokeVolumes {
   float mostCarried() const { return mostCarried_; }
 
   /// Plans one step from the geometry of the last call to boundary's. u, v: free of divergence in the new
-  /// geometry.
-  void prepare(const Boundary& boundary, const Field& u, const Field& v, double dt, ThreadPool& pool);
-  /// Before the last sweep, which starts with `volume`: what the cells carry afterwards.
-  void settle(const Boundary& boundary, Axis axis, const Field& volume);
+  /// geometry. `active`: where there is smoke of any colour. While no solid moves only the flows near it are
+  /// found, and only they count.
+  void prepare(const Boundary& boundary, const Field& u, const Field& v, double dt, const Activity& active,
+               ThreadPool& pool);
+  /// Before the last sweep, which starts with `volume`: what values are measured by afterwards.
+  void settle(const Boundary& boundary, Axis axis, const SweptVolumes& volume);
+  /// After it: carried() is what the step ends with.
+  void commit(const Boundary& boundary);
   /// The new geometry becomes the old one.
   void finish(const Boundary& boundary);
 
@@ -37,15 +42,14 @@ class SmokeVolumes {
   int parts() const { return parts_; }
   /// Volume through the low face of each cell in one part, in cells; margins filled.
   const Field& courant(Axis axis) const { return axis == Axis::x ? courantX_ : courantY_; }
-  /// Volumes to start with; 1 where a cell stays closed. settle() changes it to those that the step ends
-  /// with.
-  Field& start() { return start_; }
+  /// Volumes to start with; 1 where a cell stays closed.
+  const Field& start() const { return start_; }
+  /// The same for the sweeps, none of them done.
+  SweptVolumes swept() const;
   /// What values are measured by after the last sweep; 0 in clusters, whose values are found apart.
   const Field& measure(const Boundary& boundary) const { return nodes_.empty() ? boundary.volume : measure_; }
   /// Open shares at the end of the last step.
   const Field& openShare() const { return volumeBefore_; }
-  /// next = volume after a sweep that starts with `volume`.
-  void advance(Axis axis, const Field& volume, Field& next, ThreadPool& pool) const;
 
   /// What cluster k as a whole carries after the last sweep.
   double clusterCarried(int k) const { return clusterCarried_[k]; }
@@ -67,13 +71,32 @@ class SmokeVolumes {
   float flows(const Boundary& boundary, const Field& u, const Field& v, double dt, ThreadPool& pool);
   void scale(float factor, ThreadPool& pool);
   void listNodes();
+  void findWindows(const Activity& active, int reach);
+  int plan(const Boundary& boundary, const Field& u, const Field& v, double dt, ThreadPool& pool);
+  void wrapMargins(Field& field) const;
+  bool inWindow(int i, int j) const {
+    const Window& w = windows_[j / kWindowRows];
+    return i >= w.begin && i < w.end;
+  }
+
+  /// The columns in which the flows of some rows are wanted.
+  struct Window {
+    int begin = 0, end = 0;
+    void join(Window o) {
+      if (o.begin >= o.end) return;
+      *this = begin >= end ? o : Window{std::min(begin, o.begin), std::max(end, o.end)};
+    }
+  };
+  static constexpr int kWindowRows = 32;
 
   SmokeCells cells_;
+  std::vector<Window> windows_, smoky_;  // by kWindowRows rows
   Field courantX_, courantY_, start_, measure_;
   Field openXBefore_, openYBefore_, volumeBefore_;
   RegionMap regionsBefore_;
   RegionMatch match_;
-  std::vector<int> cut_, nodes_, exchanging_;
+  std::vector<int> cut_, near_, nodes_, exchanging_;  // near_: those of cut_ in the windows
+  std::vector<float> ends_;           // by place in nodes_: what they carry after the last sweep
   std::vector<std::uint8_t> listed_;  // by cell: is in nodes_; for moving solids only
   TransferPlan plan_;
   CellClusters clusters_;
@@ -87,7 +110,7 @@ class SmokeVolumes {
   int parts_ = 1;
 };
 
-/// Fills the four margins along an axis from the other side of a periodic domain.
-void wrapMargin(Field& field, Axis axis, int nx, int ny, bool faces);
+/// Fills the four margins of a field at cell centres along an axis from the other side of a periodic domain.
+void wrapMargin(Field& field, Axis axis, int nx, int ny);
 
 }  // namespace smokebox

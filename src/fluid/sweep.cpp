@@ -20,8 +20,9 @@ constexpr float kClusterSlack = 8;  // clusters have more faces at which fluxes 
 // The donor flux through faces [0, n) and what the reconstruction adds to it. Pointers are to the first face;
 // `d` is the distance between a face's high cell and its low cell.
 template <class Step>
-void fluxes(int n, const float* __restrict c, const float* __restrict r, const float* __restrict v, Step d,
-            float highest, float* __restrict donor, float* __restrict extra) {
+void fluxes(int n, const float* __restrict c, const float* __restrict r, const float* __restrict vLow,
+            const float* __restrict vHigh, Step d, float highest, float* __restrict donor,
+            float* __restrict extra) {
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     const float flow = c[k];
@@ -29,7 +30,7 @@ void fluxes(int n, const float* __restrict c, const float* __restrict r, const f
     const float l3 = r[k - 3 * d], l2 = r[k - 2 * d], l1 = r[k - d], h1 = r[k], h2 = r[k + d],
                 h3 = r[k + 2 * d];
     const float a = up ? l3 : h3, b = up ? l2 : h2, mid = up ? l1 : h1, e = up ? h1 : l1, f = up ? h2 : l2;
-    const float vUp = up ? v[k - d] : v[k];
+    const float vUp = up ? vLow[k] : vHigh[k];
     const float g = std::min(std::fabs(flow) / vUp, 1.0f);
     const float t1 = e - b, t2 = (e - mid) - (mid - b);
     const float t3 = (f - a) - 2 * t1, t4 = (f + a) - 4 * (e + b) + 6 * mid;
@@ -57,8 +58,7 @@ void limits(int n, const float* __restrict m, const float* __restrict v, const f
     const float mDonor = m[k] - (donorHigh[k] - donorLow[k]);
     const float enters = larger(extraLow[k], 0.0f) - smaller(extraHigh[k], 0.0f);
     const float leaves = larger(extraHigh[k], 0.0f) - smaller(extraLow[k], 0.0f);
-    const float room = larger(highest * vNext - mDonor - slack, 0.0f),
-                stock = larger(mDonor - slack, 0.0f);
+    const float room = larger(highest * vNext - mDonor - slack, 0.0f), stock = larger(mDonor - slack, 0.0f);
     in[k] = smaller(1.0f, room / (enters + kTiny));
     out[k] = smaller(1.0f, stock / (leaves + kTiny));
   }
@@ -130,12 +130,13 @@ Largest updateWith(int n, const float* __restrict m, const float* __restrict div
 }
 
 // Corrections at the listed faces of row j with first <= i < last; `donor` and `extra` point to face `first`.
-// `d` as above.
-void patchFaces(const SweepJob& job, int j, int first, int last, std::ptrdiff_t d, float* extra) {
+// `d`, vLow and vHigh as above.
+void patchFaces(const SweepJob& job, int j, int first, int last, std::ptrdiff_t d, const float* vLow,
+                const float* vHigh, float* extra) {
   const IrregularFace* face = job.irregular->begin(j);
   const IrregularFace* const end = job.irregular->end(j);
   face = std::lower_bound(face, end, first, [](const IrregularFace& f, int i) { return f.i < i; });
-  const float *c = job.courant->row(j), *r = job.value->row(j), *v = job.volume->row(j);
+  const float *c = job.courant->row(j), *r = job.value->row(j);
   for (; face != end && face->i < last; ++face) {
     const int i = face->i;
     const float flow = c[i];
@@ -147,10 +148,10 @@ void patchFaces(const SweepJob& job, int j, int first, int last, std::ptrdiff_t 
     float mean, mid;
     if (flow > 0) {
       mid = l1;
-      mean = sweptMean3(face->behindLow ? r[i - 2 * d] : l1, l1, h1, std::min(flow / v[i - d], 1.0f));
+      mean = sweptMean3(face->behindLow ? r[i - 2 * d] : l1, l1, h1, std::min(flow / vLow[i - first], 1.0f));
     } else {
       mid = h1;
-      mean = sweptMean3(face->behindHigh ? r[i + d] : h1, h1, l1, std::min(-flow / v[i], 1.0f));
+      mean = sweptMean3(face->behindHigh ? r[i + d] : h1, h1, l1, std::min(-flow / vHigh[i - first], 1.0f));
     }
     extra[i - first] = flow * (std::min(std::max(mean, 0.0f), job.highest) - mid);
   }
@@ -191,6 +192,37 @@ struct alignas(64) Row {
 
 }  // namespace
 
+void SweptVolumes::swept(Axis axis) {
+  float &own = axis == Axis::x ? onlyX : onlyY, &other = axis == Axis::x ? onlyY : onlyX;
+  if (other > 0) {
+    other = 0;
+    both += 1;
+  } else {
+    own += 1;
+  }
+}
+
+const float* SweptVolumes::row(int first, int n, int j, float* buffer) const {
+  if (fresh()) return start->row(j) + first;
+  const bool outside = !periodicY && (j < 0 || j >= ny);
+  const float *v = start->row(j) + first, *x = courantX->row(j) + first, *low = courantY->row(j) + first,
+              *high = courantY->row(j + 1) + first;
+  const float b = both, ox = onlyX, oy = onlyY;
+  if (outside) {
+    std::fill_n(buffer, n, 1.0f);
+    return buffer;
+  }
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    const float netX = x[k + 1] - x[k], netY = high[k] - low[k];
+    buffer[k] = v[k] - (b * (netX + netY) + (ox * netX + oy * netY));
+  }
+  if (periodicX) return buffer;
+  for (int k = 0; first + k < 0; ++k) buffer[k] = 1;
+  for (int k = n - 1; first + k >= nx; --k) buffer[k] = 1;
+  return buffer;
+}
+
 Sweeper::Sweeper(int nx, int ny) {
   const int strips = (nx + kStrip - 1) / kStrip, tiles = strips * ((ny + kTileRows - 1) / kTileRows);
   low_.resize(std::max(ny, tiles));
@@ -210,8 +242,7 @@ SweepResult Sweeper::runX(const SweepJob& job, ThreadPool& pool) {
   auto oneRow = [&](int j) {
     low_[j] = high_[j] = 0;
     std::int32_t top = 0;
-    const float *c = job.courant->row(j), *r = job.value->row(j), *v = job.volume->row(j),
-                *m = job.mass->row(j);
+    const float *c = job.courant->row(j), *r = job.value->row(j), *m = job.mass->row(j);
     float *mOut = job.massOut->row(j), *rOut = job.valueOut->row(j);
     for (int s = 0; s < strips; ++s) {
       const int first = s * kStrip, last = std::min(nx, first + kStrip), n = last - first;
@@ -222,24 +253,25 @@ SweepResult Sweeper::runX(const SweepJob& job, ThreadPool& pool) {
         clear(job, s, j);
         continue;
       }
-      Row donorRow, extraRow, inRow, outRow, fluxRow;
+      Row donorRow, extraRow, inRow, outRow, fluxRow, volumeRow;
       float *donor = donorRow.at0(), *extra = extraRow.at0(), *in = inRow.at0(), *out = outRow.at0(),
             *flux = fluxRow.at0();
+      const float* v = job.volume.row(first - 2, n + 4, j, volumeRow.at0() - 2) + 2;  // of cell `first`
       // Faces first - 1 .. last + 1, cells first - 1 .. last, final fluxes first .. last.
-      fluxes(n + 3, c + first - 1, r + first - 1, v + first - 1, 1, job.highest, donor - 1, extra - 1);
-      patchFaces(job, j, first - 1, last + 2, 1, extra - 1);
+      fluxes(n + 3, c + first - 1, r + first - 1, v - 2, v - 1, 1, job.highest, donor - 1, extra - 1);
+      patchFaces(job, j, first - 1, last + 2, 1, v - 2, v - 1, extra - 1);
       if (!job.periodic && s == 0) cleanInflow(c[0], true, donor[0], extra[0]);
       if (!job.periodic && s == strips - 1) cleanInflow(c[nx], false, donor[n], extra[n]);
-      limits(n + 2, m + first - 1, v + first - 1, c + first - 1, c + first, donor - 1, donor, extra - 1,
-             extra, job.highest, slack, in - 1, out - 1);
+      limits(n + 2, m + first - 1, v - 1, c + first - 1, c + first, donor - 1, donor, extra - 1, extra,
+             job.highest, slack, in - 1, out - 1);
       patchLimits(job, j, first - 1, last + 1, extra - 1, extra, slack, in - 1, out - 1);
       if (!job.periodic && s == 0) in[-1] = out[-1] = 1;
       if (!job.periodic && s == strips - 1) in[n] = out[n] = 1;
       joinFluxes(n + 1, c + first, r + first, 1, donor, extra, in - 1, out - 1, in, out, job.quantum, flux);
       const Largest most = job.divisor ? updateWith(n, m + first, job.divisor->row(j) + first, flux, flux + 1,
                                                     mOut + first, rOut + first)
-                                       : update(n, m + first, v + first, c + first, c + first + 1, flux,
-                                                flux + 1, mOut + first, rOut + first);
+                                       : update(n, m + first, v, c + first, c + first + 1, flux, flux + 1,
+                                                mOut + first, rOut + first);
       if (s == 0) low_[j] = flux[0];
       if (s == strips - 1) high_[j] = flux[n];
       job.activeOut->at(s, j) = most.mass > 0;
@@ -278,11 +310,17 @@ SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
     // Rings of rows: faces j, j + 1 and limits of cells j - 1, j are alive at once.
     Row donorRing[2], extraRing[2], inRing[2], outRing[2], fluxRing[2];
     auto ring = [](Row* rows, int j) { return rows[j & 1].at0(); };
+    Row volumeRing[4];
+    const float* volumes[4];
+    auto volumeAt = [&](int j) -> const float*& { return volumes[j & 3]; };
+    auto findVolume = [&](int j) { volumeAt(j) = job.volume.row(first, n, j, volumeRing[j & 3].at0()); };
+    findVolume(j0 - 2);
     auto face = [&](int j) {
+      findVolume(j);
       float *donor = ring(donorRing, j), *extra = ring(extraRing, j);
       const float* c = job.courant->row(j) + first;
-      fluxes(n, c, job.value->row(j) + first, job.volume->row(j) + first, d, job.highest, donor, extra);
-      patchFaces(job, j, first, last, d, extra);
+      fluxes(n, c, job.value->row(j) + first, volumeAt(j - 1), volumeAt(j), d, job.highest, donor, extra);
+      patchFaces(job, j, first, last, d, volumeAt(j - 1), volumeAt(j), extra);
       if (!job.periodic && (j == 0 || j == ny))
         for (int k = 0; k < n; ++k) cleanInflow(c[k], j == 0, donor[k], extra[k]);
     };
@@ -296,7 +334,7 @@ SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
         std::fill_n(in, n, 1.0f);
         std::fill_n(out, n, 1.0f);
       } else {
-        limits(n, job.mass->row(j) + first, job.volume->row(j) + first, cLow, cHigh, ring(donorRing, j),
+        limits(n, job.mass->row(j) + first, volumeAt(j), cLow, cHigh, ring(donorRing, j),
                ring(donorRing, j + 1), ring(extraRing, j), ring(extraRing, j + 1), job.highest, slack, in,
                out);
         patchLimits(job, j, first, last, ring(extraRing, j), ring(extraRing, j + 1), slack, in, out);
@@ -315,8 +353,8 @@ SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
       float *mOut = job.massOut->row(i) + first, *rOut = job.valueOut->row(i) + first;
       const Largest most =
           job.divisor ? updateWith(n, m, job.divisor->row(i) + first, ring(fluxRing, i), flux, mOut, rOut)
-                      : update(n, m, job.volume->row(i) + first, job.courant->row(i) + first, cLow,
-                               ring(fluxRing, i), flux, mOut, rOut);
+                      : update(n, m, volumeAt(i), job.courant->row(i) + first, cLow, ring(fluxRing, i), flux,
+                               mOut, rOut);
       job.activeOut->at(s, i) = most.mass > 0;
       top = std::max(top, most.value);
     }

@@ -12,6 +12,7 @@
 // as a list with a 3rd-order stencil, or the donor flux alone; merged cells share one value, see
 // smoke_merge.h.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -58,6 +59,11 @@ class Activity {
   int strips() const { return strips_; }
   std::uint8_t& at(int strip, int j) { return flags_[(j + 4) * strips_ + strip]; }
   std::uint8_t at(int strip, int j) const { return flags_[(j + 4) * strips_ + strip]; }
+  void clear() { std::fill(flags_.begin(), flags_.end(), 0); }
+  /// Marks what is marked in one of the same shape.
+  void add(const Activity& other) {
+    for (std::size_t k = 0; k < flags_.size(); ++k) flags_[k] |= other.flags_[k];
+  }
   void swap(Activity& other) noexcept {
     std::swap(strips_, other.strips_);
     flags_.swap(other.flags_);
@@ -68,12 +74,33 @@ class Activity {
   std::vector<std::uint8_t> flags_;
 };
 
+/// The volumes of the cells before a sweep: those at the start of the step less what the sweeps so far have
+/// carried out of them. Nothing is stored: a row is worked out where a sweep needs it.
+struct SweptVolumes {
+  int nx = 0, ny = 0;
+  bool periodicX = false, periodicY = false;
+  const Field* start = nullptr;                          // margins filled where periodic, else 1
+  const Field *courantX = nullptr, *courantY = nullptr;  // through the low faces; margins as above
+  float both = 0, onlyX = 0, onlyY = 0;  // how often along both axes; 1 for one more sweep along one
+
+  bool fresh() const { return both == 0 && onlyX == 0 && onlyY == 0; }
+  void swept(Axis axis);
+  float at(int i, int j) const {
+    const float netX = (*courantX)(i + 1, j) - (*courantX)(i, j);
+    const float netY = (*courantY)(i, j + 1) - (*courantY)(i, j);
+    return (*start)(i, j) - (both * (netX + netY) + (onlyX * netX + onlyY * netY));
+  }
+  /// Those of cells first .. first + n - 1 of row j, in `buffer` or in place; 1 beyond sides that are not
+  /// periodic.
+  const float* row(int first, int n, int j, float* buffer) const;
+};
+
 struct SweepJob {
   Axis axis = Axis::x;
   int nx = 0, ny = 0;
   bool periodic = false;           // along the axis
   const Field* courant = nullptr;  // volume through the low face of each cell, in cells; margins filled
-  const Field* volume = nullptr;   // before the sweep; margins filled
+  SweptVolumes volume;             // before the sweep
   const Field* divisor = nullptr;  // if set: the volume that the values out are measured by (0: value 0)
   const Field* mass = nullptr;     // margins filled if periodic
   const Field* value = nullptr;    // margins filled
