@@ -214,12 +214,8 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
 void CellClusters::listRoots(const SmokeCells& cells) {
   // By rows: clusters are few, so a sort by key will do.
   auto fill = [&](RowList<ClusterRoot>& list, bool copiesX, bool copiesY) {
-    struct Place {
-      int j;
-      ClusterRoot root;
-    };
-    std::vector<Place> places;
-    places.reserve(3 * count());
+    std::vector<RootPlace>& places = places_;
+    places.clear();
     for (int k = 0; k < count(); ++k) {
       const int i = cells.i(*begin(k)), j = cells.j(*begin(k));
       places.push_back({j, {i, k}});
@@ -228,11 +224,12 @@ void CellClusters::listRoots(const SmokeCells& cells) {
       if (copiesY && j == 0) places.push_back({cells.ny, {i, k}});
       if (copiesY && j == cells.ny - 1) places.push_back({-1, {i, k}});
     }
-    std::sort(places.begin(), places.end(),
-              [](const Place& a, const Place& b) { return a.j != b.j ? a.j < b.j : a.root.i < b.root.i; });
+    std::sort(places.begin(), places.end(), [](const RootPlace& a, const RootPlace& b) {
+      return a.j != b.j ? a.j < b.j : a.root.i < b.root.i;
+    });
     list.items.clear();
     list.start.assign(cells.ny + 4, 0);
-    for (const Place& p : places) {
+    for (const RootPlace& p : places) {
       list.items.push_back(p.root);
       ++list.start[p.j + 2];
     }

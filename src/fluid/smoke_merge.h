@@ -49,6 +49,11 @@ class CellClusters {
   std::vector<int> nodes_;             // cells to look after
   std::vector<int> members_, first_{0}, linked_, placed_;
   RowList<ClusterRoot> rootsX_, rootsY_;
+  struct RootPlace {
+    int j;
+    ClusterRoot root;
+  };
+  std::vector<RootPlace> places_;  // while they are sorted
 };
 
 /// The faces whose 5th-order stencil meets a cut cell or a face that is not fully open; found anew when

@@ -245,6 +245,7 @@ SweptVolumes SmokeVolumes::swept() const {
   volume.start = &start_;
   volume.courantX = &courantX_;
   volume.courantY = &courantY_;
+  volume.keepDivergence = carries();
   return volume;
 }
 

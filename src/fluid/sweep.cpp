@@ -193,29 +193,37 @@ struct alignas(64) Row {
 }  // namespace
 
 void SweptVolumes::swept(Axis axis) {
-  float &own = axis == Axis::x ? onlyX : onlyY, &other = axis == Axis::x ? onlyY : onlyX;
-  if (other > 0) {
-    other = 0;
-    both += 1;
-  } else {
-    own += 1;
+  bool &own = axis == Axis::x ? onlyX : onlyY, &other = axis == Axis::x ? onlyY : onlyX;
+  if (!other) {
+    own = true;
+    return;
   }
+  other = false;
+  if (keepDivergence) both += 1;
 }
 
-const float* SweptVolumes::row(int first, int n, int j, float* buffer) const {
-  if (fresh()) return start->row(j) + first;
-  const bool outside = !periodicY && (j < 0 || j >= ny);
-  const float *v = start->row(j) + first, *x = courantX->row(j) + first, *low = courantY->row(j) + first,
-              *high = courantY->row(j + 1) + first;
-  const float b = both, ox = onlyX, oy = onlyY;
-  if (outside) {
+const float* SweptVolumes::row(int first, int n, int j, float* __restrict buffer) const {
+  const float* __restrict v = start->row(j) + first;
+  if (both == 0 && !onlyX && !onlyY) return v;
+  if (!periodicY && (j < 0 || j >= ny)) {
     std::fill_n(buffer, n, 1.0f);
     return buffer;
   }
+  const float* __restrict x = courantX->row(j) + first;
+  const float *low = courantY->row(j) + first, *high = courantY->row(j + 1) + first;
+  if (both > 0) {
+    const float b = both, once = onlyX ? 1 : 0, onceY = onlyY ? 1 : 0;
 #pragma omp simd
-  for (int k = 0; k < n; ++k) {
-    const float netX = x[k + 1] - x[k], netY = high[k] - low[k];
-    buffer[k] = v[k] - (b * (netX + netY) + (ox * netX + oy * netY));
+    for (int k = 0; k < n; ++k) {
+      const float netX = x[k + 1] - x[k], netY = high[k] - low[k];
+      buffer[k] = v[k] - (b * (netX + netY) + (once * netX + onceY * netY));
+    }
+  } else if (onlyX) {
+#pragma omp simd
+    for (int k = 0; k < n; ++k) buffer[k] = v[k] - (x[k + 1] - x[k]);
+  } else {
+#pragma omp simd
+    for (int k = 0; k < n; ++k) buffer[k] = v[k] - (high[k] - low[k]);
   }
   if (periodicX) return buffer;
   for (int k = 0; first + k < 0; ++k) buffer[k] = 1;

@@ -81,14 +81,19 @@ struct SweptVolumes {
   bool periodicX = false, periodicY = false;
   const Field* start = nullptr;                          // margins filled where periodic, else 1
   const Field *courantX = nullptr, *courantY = nullptr;  // through the low faces; margins as above
-  float both = 0, onlyX = 0, onlyY = 0;  // how often along both axes; 1 for one more sweep along one
+  /// Sweeps along both axes leave what the flow's divergence makes of it. If not, they leave what there was:
+  /// where no solid moves, that divergence is the pressure solver's tolerance.
+  bool keepDivergence = true;
+  // How often along both axes, and whether once more along one of them.
+  float both = 0;
+  bool onlyX = false, onlyY = false;
 
-  bool fresh() const { return both == 0 && onlyX == 0 && onlyY == 0; }
   void swept(Axis axis);
   float at(int i, int j) const {
     const float netX = (*courantX)(i + 1, j) - (*courantX)(i, j);
     const float netY = (*courantY)(i, j + 1) - (*courantY)(i, j);
-    return (*start)(i, j) - (both * (netX + netY) + (onlyX * netX + onlyY * netY));
+    const float once = onlyX ? netX : onlyY ? netY : 0.0f;
+    return (*start)(i, j) - (both > 0 ? both * (netX + netY) + once : once);
   }
   /// Those of cells first .. first + n - 1 of row j, in `buffer` or in place; 1 beyond sides that are not
   /// periodic.
