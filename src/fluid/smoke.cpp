@@ -332,7 +332,9 @@ void Smoke::add(const Boundary& boundary, int channel, const Field& share, doubl
       if (m[i] + more < 0) more = -m[i];
       m[i] = static_cast<float>(m[i] + more);
       added += more;
-      value[i] = m[i] / carried[i];
+      // Where the value was at the ceiling, a little less than mass over volume, it stays so.
+      const float grown = value[i] + static_cast<float>(more / carried[i]), quotient = m[i] / carried[i];
+      value[i] = more > 0 && grown < quotient ? grown : quotient;
       c.highest = std::max(c.highest, value[i]);
       c.active.at(i / Activity::kStrip, j) = 1;
     }
