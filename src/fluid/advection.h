@@ -19,7 +19,8 @@ class VelocityExtension;
 
 class Advection {
  public:
-  /// Makes a velocity of a middle stage roughly divergence-free by `cycles` iterations, and adds `phiGain`
+  /// Makes a velocity of a middle stage roughly divergence-free by `cycles` iterations (0: a bare
+  /// cycle), and adds `phiGain`
   /// times the increment to the lagged phi (whose impulse is that of a whole step): what follows then knows
   /// the pressure of now. That keeps the error of sub-steps at that of steps of their size, and saves an
   /// iteration at the end.

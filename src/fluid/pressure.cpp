@@ -63,8 +63,8 @@ struct PressureSolver::Impl {
   /// solution += alpha direction (from 0 if it is the first), b -= alpha A direction (computed again: cheaper
   /// than to keep it); returns the largest |b|. b is left alone if this is the last step.
   double advanceSolution(float alpha, bool first, bool last);
-  /// Takes the mean off the solution in sealed regions.
-  void centreSolution();
+  /// Takes the mean off a solution in sealed regions, and copies it beyond the sides.
+  void centre(Floats& values);
   /// phi += gain x.
   void add(const Floats& x, Field& phi, float gain);
   /// increment += solution, copies beyond the sides too.
@@ -183,24 +183,23 @@ double PressureSolver::Impl::advanceSolution(float alpha, bool first, bool last)
   return largest;
 }
 
-void PressureSolver::Impl::centreSolution() {
+void PressureSolver::Impl::centre(Floats& values) {
   Level& level = multigrid.finest();
   if (regions.anySealed()) {
     const auto& all = regions.regions();
     sums.assign(all.size(), 0);
     for (const Regions::Run& run : regions.runs())
-      if (all[run.region].sealed)
-        sums[run.region] += sumOfRow(level.row(solution, run.j), run.begin, run.end);
+      if (all[run.region].sealed) sums[run.region] += sumOfRow(level.row(values, run.j), run.begin, run.end);
     for (std::size_t r = 0; r < all.size(); ++r) sums[r] /= static_cast<double>(all[r].cells);
     for (const Regions::Run& run : regions.runs()) {
       if (!all[run.region].sealed) continue;
-      float* x = level.row(solution, run.j);
+      float* x = level.row(values, run.j);
       const float mean = static_cast<float>(sums[run.region]);
       for (int i = run.begin; i < run.end; ++i) x[i] -= mean;
     }
   }
-  for (int j = 0; j < level.ny; ++j) level.wrapRow(level.row(solution, j));
-  level.wrapRows(solution);
+  for (int j = 0; j < level.ny; ++j) level.wrapRow(level.row(values, j));
+  level.wrapRows(values);
 }
 
 void PressureSolver::Impl::remember() {
@@ -238,7 +237,7 @@ int PressureSolver::Impl::solve(double start, double target, int maxIterations) 
     if (!(residual > enough)) break;
   }
   if (iteration == 0) std::fill(solution.begin(), solution.end(), 0.0f);
-  centreSolution();
+  centre(solution);
   return iteration;
 }
 
@@ -296,9 +295,15 @@ void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v
   s.flux.closeFaces(boundary, level, u, v);
   const Impl::Source source = s.source(boundary, u, v);
   if (!(source.flux > 0) || !std::isfinite(source.flux)) return;
-  s.solve(source.flux, 0, cycles);
-  s.flux.subtractGradient(level, s.solution, u, v);
-  if (phi) s.add(s.solution, *phi, static_cast<float>(gain));
+  Floats& increment = cycles > 0 ? s.solution : s.multigrid.finest().x;
+  if (cycles > 0) {
+    s.solve(source.flux, 0, cycles);
+  } else {
+    s.multigrid.cycle();
+    s.centre(increment);
+  }
+  s.flux.subtractGradient(level, increment, u, v);
+  if (phi) s.add(increment, *phi, static_cast<float>(gain));
 }
 
 std::size_t PressureSolver::bytes() const {

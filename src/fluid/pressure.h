@@ -37,8 +37,9 @@ class PressureSolver {
   /// so after this, nor after rebuild().
   void forget();
 
-  /// A rough projection for the middle of a step: `cycles` iterations, nothing measured. `gain` times the
-  /// increment that was subtracted is added to `phi`, unless that is null.
+  /// A rough projection for the middle of a step: `cycles` iterations, or a bare multigrid cycle for 0, which
+  /// costs two thirds of one; nothing measured. `gain` times the increment that was subtracted is added to
+  /// `phi`, unless that is null.
   void projectRoughly(const Boundary& boundary, Field& u, Field& v, int cycles, Field* phi = nullptr,
                       double gain = 1);
 
