@@ -7,6 +7,9 @@
 // coarsened down to one block. Cells without an open face, and regions without an open side at the coarsest
 // level, get 0 from there: b must add up to 0 over each sealed region.
 //
+// The colours are mirrored about the middle of an even number of columns: a problem that is mirrored left to
+// right has the mirrored solution to the bit, where the columns halve down to one.
+//
 // All sweeps of a level run in one pass over its rows, each row as soon as its neighbours are ready; several
 // threads do so in bands of rows, each sweep a row further from the border than the last, and then what is
 // missing at the borders. Rows that are periodic: one pass for each sweep. The results are the same to the

@@ -71,6 +71,7 @@ void Builder::finest(const Boundary& boundary, Level& level) {
     if (level.periodicX) ax[nx] = ax[0];
   }
   raw_.clear();
+  chooseColours(level);
   listSpecials(level);
   classify(level);
 }
@@ -80,6 +81,7 @@ void Builder::coarsen(Level& fine, Level& coarse) {
   findParts(fine, coarse);
   linkGrid(fine, coarse);
   linkLists(fine, coarse);
+  chooseColours(coarse);
   listSpecials(coarse);
   classify(coarse);
 }
@@ -433,6 +435,39 @@ void Builder::linkLists(const Level& fine, Level& coarse) {
   if (coarse.periodicY) std::copy_n(coarse.row(coarse.ay, 0), coarse.nx, coarse.row(coarse.ay, coarse.ny));
 }
 
+// In the middle of mirrored colours two columns have one colour, and a sweep over it does not see what links
+// them. That converges unless such a link is nearly all that its cells have; then, and where blocks are split
+// there, the colours go on as everywhere.
+void Builder::chooseColours(Level& level) {
+  constexpr float kMost = 0.7f;
+  const int middle = level.nx / 2;
+  level.swapsAt = level.chunks * kLanes + kLanes;
+  if (level.nx % 2 == 1) return;
+  const auto tolerable = [&](int a, int b) {
+    for (int j = 0; j < level.ny; ++j) {
+      const float link = level.ax[level.at(b == 0 ? level.nx : b, j)];
+      if (!(link > 0)) continue;
+      for (const int i : {a, b}) {
+        const std::ptrdiff_t at = level.at(i, j);
+        const float sum = (level.ax[at] + level.ax[at + 1]) + (level.ay[at] + level.ay[at + level.stride]);
+        if (link > kMost * sum) return false;
+      }
+    }
+    return true;
+  };
+  const auto split = [&](int at) {
+    if (at >= level.extrasBegin)
+      at = static_cast<int>(level.at(level.extraCell[at - level.extrasBegin] % level.nx,
+                                     level.extraCell[at - level.extrasBegin] / level.nx));
+    const int i = cellOf(level, at).i;
+    return i == middle || i == middle - 1 || i <= 0 || i >= level.nx - 1;
+  };
+  for (const Raw& link : raw_)
+    if (split(link.a) || (!link.ghost && split(link.b))) return;
+  if (tolerable(middle - 1, middle) && (!level.periodicX || tolerable(level.nx - 1, 0)))
+    level.swapsAt = middle;
+}
+
 // Sorts the special unknowns by row and colour, and gathers their links; parallel links become one.
 void Builder::listSpecials(Level& level) {
   if (slot_.size() < level.x.size()) slot_.resize(level.x.size(), -1);
@@ -455,7 +490,7 @@ void Builder::listSpecials(Level& level) {
   level.specialBegin.assign(2 * level.ny + 1, 0);
   const auto key = [&](int at) {
     const Cell c = cellOf(level, at);
-    return 2 * c.j + ((c.i + c.j) & 1);
+    return 2 * c.j + level.colourOf(c.i, c.j);
   };
   for (int at : specials_) ++level.specialBegin[key(at) + 1];
   for (int k = 0; k < 2 * level.ny; ++k) level.specialBegin[k + 1] += level.specialBegin[k];

@@ -50,6 +50,7 @@ class Builder {
   void linkLists(const Level& fine, Level& coarse);
   void linkLeft(const Level& fine, Level& coarse, int I, int J);
   void linkBelow(const Level& fine, Level& coarse, int I, int J);
+  void chooseColours(Level& level);
   void listSpecials(Level& level);
   void classify(Level& level);
   int findRoot(int member);

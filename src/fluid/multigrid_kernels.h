@@ -54,10 +54,13 @@ SMOKEBOX_INLINE unsigned bitsOf(const LaneMask& m) {
   return static_cast<unsigned>(sum);
 }
 
-/// Lanes of row j that have the given colour (0 red: i + j even).
-SMOKEBOX_INLINE LaneMask lanesOfColour(int j, int colour) {
+/// Lanes of columns i to i + 15 of row j that have the given colour (0 red: i + j even; where the level is
+/// mirrored, the right half has its colours the other way round).
+SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int j, int colour) {
   const LaneMask even = {-1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
-  return ((j + colour) & 1) ? ~even : even;
+  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const LaneMask mask = ((j + colour) & 1) ? ~even : even;
+  return mask ^ (place >= level.swapsAt - static_cast<int>(i));
 }
 
 /// The new values of both colours in 16 cells; `left` are the values to the left of them.
@@ -93,26 +96,27 @@ inline void sweepRow(Level& level, int j, int colour) {
   const float* ay = level.row(level.ay, j);
   const float* id = level.row(level.id, j);
   const std::ptrdiff_t stride = level.stride;
-  const LaneMask mask = lanesOfColour(j, colour);
   const Level::Run* run = (bandOnly ? level.bandRuns : level.runs).data() + begin[j];
   const Level::Run* end = (bandOnly ? level.bandRuns : level.runs).data() + begin[j + 1];
-  for (; run != end; ++run) {
+  Lanes left = {};
+  for (int done = -1; run != end; ++run) {
     // The left neighbours of the next chunk are loaded before this one is stored: the store would stall the
-    // load.
-    Lanes left = load(x + run->begin - 1);
+    // load. Two columns of one colour, in the middle, so see each other's old values.
+    if (run->begin != done) left = load(x + run->begin - 1);
+    done = run->end;
     if (!bandOnly && run->regular) {
       for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
         const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
         const Lanes value = relaxedRegular(x + i, b + i, stride, left);
         left = nextLeft;
-        store(x + i, mask ? value : old);
+        store(x + i, lanesOfColour(level, i, j, colour) ? value : old);
       }
     } else {
       for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
         const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
         const Lanes value = relaxedGeneral(x + i, b + i, ax + i, ay + i, id + i, stride, left);
         left = nextLeft;
-        store(x + i, mask ? value : old);
+        store(x + i, lanesOfColour(level, i, j, colour) ? value : old);
       }
     }
   }
@@ -125,15 +129,15 @@ inline void startRow(Level& level, int j) {
   float* x = level.row(level.x, j);
   const float* b = level.row(level.b, j);
   const float* id = level.row(level.id, j);
-  const LaneMask mask = lanesOfColour(j, 0);
   const Lanes zero = {};
   for (int r = level.runBegin[j]; r < level.runBegin[j + 1]; ++r) {
     const Level::Run& run = level.runs[r];
     if (run.regular) {
-      for (int i = run.begin; i < run.end; i += kLanes) store(x + i, mask ? load(b + i) * 0.25f : zero);
+      for (int i = run.begin; i < run.end; i += kLanes)
+        store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * 0.25f : zero);
     } else {
       for (int i = run.begin; i < run.end; i += kLanes)
-        store(x + i, mask ? load(b + i) * load(id + i) : zero);
+        store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * load(id + i) : zero);
     }
   }
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)

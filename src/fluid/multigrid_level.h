@@ -53,6 +53,9 @@ struct Level {
   int nx = 0, ny = 0;
   bool periodicX = false, periodicY = false;
   int chunks = 0;                         // in a row
+  // The colours are mirrored about the middle of an even number of columns, so that a mirrored problem has the
+  // mirrored solution: from this column on, or from beyond the last.
+  int swapsAt = 0;
   double unit = 1;                        // edge of a whole block, in cells of the finest grid
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
   std::ptrdiff_t extrasBegin = 0;         // offset of the first extra unknown
@@ -131,6 +134,8 @@ struct Level {
   }
   /// The rows beyond bottom and top, if those are periodic.
   void wrapRows(Floats& f) const;
+
+  int colourOf(int i, int j) const { return (i + j + (i >= swapsAt ? 1 : 0)) & 1; }
 
   /// Sizes everything that depends on the grid alone. `wholeResidual`: keep all its rows.
   void shape(int nx, int ny, bool periodicX, bool periodicY, bool wholeResidual);
