@@ -393,6 +393,7 @@ void Smoke::Impl::end(int channel, const Boundary& b) {
   if (c.highest > before)
     c.highest =
         spread.run(volumes.cells(), b, volumes.carried(), before, c.quantum, c.mass, c.value, c.active);
+  if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.mass, c.value, c.active);
 }
 
 void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double dt) {

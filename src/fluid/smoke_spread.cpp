@@ -64,4 +64,42 @@ float MassSpread::run(const SmokeCells& cells, const Boundary& b, const Field& v
   return most;
 }
 
+bool MassSpread::fill(const SmokeCells& cells, const Boundary& b, const Field& volume, Field& mass,
+                      Field& value, Activity& active) {
+  seen_.resize(cells.count(), 0);
+  bool all = true;
+  for (int j = 0; j < cells.ny; ++j) {
+    const float* row = mass.row(j);
+    float least = 0;
+#pragma omp simd reduction(min : least)
+    for (int i = 0; i < cells.nx; ++i) least = row[i] < least ? row[i] : least;
+    if (!(least < 0)) continue;
+    for (int i = 0; i < cells.nx; ++i) {
+      if (!(row[i] < 0)) continue;
+      const int from = cells.cell(i, j);
+      queue_.assign(1, from);
+      seen_[from] = ++search_;
+      for (std::size_t head = 0; head < queue_.size() && mass(i, j) < 0; ++head) {
+        for (int face = 0; face < 4 && mass(i, j) < 0; ++face) {
+          if (!(cells.atFace(b.openX, b.openY, queue_[head], face) > 0)) continue;
+          const int next = cells.neighbour(queue_[head], face);
+          if (next < 0 || seen_[next] == search_) continue;
+          seen_[next] = search_;
+          queue_.push_back(next);
+          const int x = cells.i(next), y = cells.j(next);
+          const float given = std::min(-mass(i, j), mass(x, y));
+          if (!(given > 0)) continue;
+          mass(i, j) += given;
+          mass(x, y) -= given;
+          value(x, y) = volume(x, y) > 0 ? mass(x, y) / volume(x, y) : 0.0f;
+          active.at(x / Activity::kStrip, y) = 1;
+        }
+      }
+      all &= mass(i, j) >= 0;
+      value(i, j) = mass(i, j) < 0 ? value(i, j) : 0.0f;
+    }
+  }
+  return all;
+}
+
 }  // namespace smokebox
