@@ -435,37 +435,32 @@ void Builder::linkLists(const Level& fine, Level& coarse) {
   if (coarse.periodicY) std::copy_n(coarse.row(coarse.ay, 0), coarse.nx, coarse.row(coarse.ay, coarse.ny));
 }
 
-// In the middle of mirrored colours two columns have one colour, and a sweep over it does not see what links
-// them. That converges unless such a link is nearly all that its cells have; then, and where blocks are split
-// there, the colours go on as everywhere.
+// In the middle of mirrored colours two columns have one colour; a sweep solves each such pair as one. Where
+// a pair has no other link, and where blocks are split there, the colours go on as everywhere.
 void Builder::chooseColours(Level& level) {
-  constexpr float kMost = 0.7f;
+  constexpr float kMost = 0.99f;
   const int middle = level.nx / 2;
   level.swapsAt = level.chunks * kLanes + kLanes;
-  if (level.nx % 2 == 1) return;
-  const auto tolerable = [&](int a, int b) {
-    for (int j = 0; j < level.ny; ++j) {
-      const float link = level.ax[level.at(b == 0 ? level.nx : b, j)];
-      if (!(link > 0)) continue;
-      for (const int i : {a, b}) {
-        const std::ptrdiff_t at = level.at(i, j);
-        const float sum = (level.ax[at] + level.ax[at + 1]) + (level.ay[at] + level.ay[at + level.stride]);
-        if (link > kMost * sum) return false;
-      }
-    }
-    return true;
+  if (level.nx % 2 == 1 || level.periodicX) return;
+  const auto linkedElsewhere = [&](int j) {
+    const std::ptrdiff_t b = level.at(middle, j), a = b - 1;
+    const auto sum = [&](std::ptrdiff_t at) {
+      return (level.ax[at] + level.ax[at + 1]) + (level.ay[at] + level.ay[at + level.stride]);
+    };
+    return !(level.ax[b] > 0) || (level.ax[b] <= kMost * sum(a) && level.ax[b] <= kMost * sum(b));
   };
   const auto split = [&](int at) {
     if (at >= level.extrasBegin)
       at = static_cast<int>(level.at(level.extraCell[at - level.extrasBegin] % level.nx,
                                      level.extraCell[at - level.extrasBegin] / level.nx));
     const int i = cellOf(level, at).i;
-    return i == middle || i == middle - 1 || i <= 0 || i >= level.nx - 1;
+    return i == middle || i == middle - 1;
   };
   for (const Raw& link : raw_)
     if (split(link.a) || (!link.ghost && split(link.b))) return;
-  if (tolerable(middle - 1, middle) && (!level.periodicX || tolerable(level.nx - 1, 0)))
-    level.swapsAt = middle;
+  for (int j = 0; j < level.ny; ++j)
+    if (!linkedElsewhere(j)) return;
+  level.swapsAt = middle;
 }
 
 // Sorts the special unknowns by row and colour, and gathers their links; parallel links become one.

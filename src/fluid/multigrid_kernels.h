@@ -76,6 +76,31 @@ SMOKEBOX_INLINE Lanes relaxedGeneral(const float* x, const float* b, const float
          load(id);
 }
 
+/// The two columns of one colour in the middle of mirrored colours: solved together, from what a sweep made
+/// of each with the old value of the other.
+struct MiddlePair {
+  float left = 0, right = 0;  // old values
+
+  void solve(Level& level, int j, float* x) const {
+    const int b = level.swapsAt, a = b - 1;
+    const std::ptrdiff_t at = level.at(b, j);
+    const float link = level.ax[at], overA = link * level.id[at - 1], overB = link * level.id[at];
+    if (!(overA > 0 && overB > 0)) return;
+    const float p = x[a] - overA * right, q = x[b] - overB * left, scale = 1 / (1 - overA * overB);
+    x[a] = (p + overA * q) * scale;
+    x[b] = (q + overB * p) * scale;
+  }
+};
+
+/// Is row j's middle pair of this colour, and swept?
+template <bool bandOnly>
+inline bool sweepsMiddle(const Level& level, int j, int colour) {
+  const int b = level.swapsAt, a = b - 1;
+  if (b >= level.nx || level.colourOf(b, j) != colour) return false;
+  const std::uint8_t *kind = level.chunkRow(j), first = kind[a / kLanes], second = kind[b / kLanes];
+  return bandOnly ? (first & second & kBand) != 0 : ((first | second) & kEmpty) == 0;
+}
+
 /// A Gauss-Seidel sweep over one colour of row j. bandOnly: only the chunks near solids.
 template <bool bandOnly>
 inline void sweepRow(Level& level, int j, int colour) {
@@ -98,6 +123,8 @@ inline void sweepRow(Level& level, int j, int colour) {
   const std::ptrdiff_t stride = level.stride;
   const Level::Run* run = (bandOnly ? level.bandRuns : level.runs).data() + begin[j];
   const Level::Run* end = (bandOnly ? level.bandRuns : level.runs).data() + begin[j + 1];
+  const bool middle = sweepsMiddle<bandOnly>(level, j, colour);
+  const MiddlePair pair = middle ? MiddlePair{x[level.swapsAt - 1], x[level.swapsAt]} : MiddlePair{};
   Lanes left = {};
   for (int done = -1; run != end; ++run) {
     // The left neighbours of the next chunk are loaded before this one is stored: the store would stall the
@@ -120,6 +147,7 @@ inline void sweepRow(Level& level, int j, int colour) {
       }
     }
   }
+  if (middle) pair.solve(level, j, x);
   for (int s = first; s < last; ++s) values[level.specialAt[s]] = level.specialValue[s];
   level.wrapRow(x);
 }
@@ -140,6 +168,7 @@ inline void startRow(Level& level, int j) {
         store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * load(id + i) : zero);
     }
   }
+  if (sweepsMiddle<false>(level, j, 0)) MiddlePair().solve(level, j, x);
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)
     level.x[level.specialAt[s]] = level.b[level.specialAt[s]] * level.specialInverse[s];
   for (int s = level.specialBegin[2 * j + 1]; s < level.specialBegin[2 * j + 2]; ++s)

@@ -68,12 +68,13 @@ TEST(WorldEvents, SourcesCanMoveAndTakeAnotherColour) {
 }
 
 TEST(WorldEvents, AnInflowThatIsSetToAFormulaFollowsIt) {
-  // Truth: between slip walls the inflow fills the channel, so at the end the speed is 2 t = 2.
+  // Truth: between slip walls the inflow fills the channel, so at the end the speed is 2 t = 2, to what a
+  // divergence of 1e-5 in each of the 16 cells and more up to the probe can add up to.
   World world = worldOf(
       "walls: {left: {inflow: [1, 0]}, right: open}\nprobes: [{name: p, at: [0.5, 0.5]}]\n"
       "events: [{at: 0.5, set: {walls.left.inflow: [\"2*t\", 0]}}]\n");
   run(world, 60);
-  EXPECT_NEAR(world.figures().probes[0].velocity.x, 2, 1e-4);
+  EXPECT_NEAR(world.figures().probes[0].velocity.x, 2, 4e-4);
 }
 
 TEST(WorldEvents, ProfilesThatBalanceNeedNoOpenWall) {
