@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "fluid/boundary.h"
+#include "fluid/viscosity.h"
 #include "geometry/coverage.h"
 
 namespace smokebox {
@@ -71,15 +72,15 @@ class SolidsOnGrid {
 };
 
 /// Force (N/m) and torque (N m/m, about the solid's origin) of the fluid on each solid from the pressure (Pa,
-/// at cell centres) and, if viscosity is not 0, from the shear in the cut links. The pressure on the surface
-/// is that of the line or plane through the nearest cells on the fluid's side, so a pressure that is linear
-/// in space gives the exact force.
+/// at cell centres) and, if viscosity is not 0, from the shear in the cut links (none if that is empty). The
+/// pressure on the surface is that of the parabola, plane or line through the nearest cells on the fluid's
+/// side, so a pressure that is linear in space gives the exact force.
 struct SurfaceForce {
   Vec2 force;
   double torque = 0;
 };
 std::vector<SurfaceForce> surfaceForces(const Boundary& boundary, const std::vector<MovingSolid>& solids,
-                                        const Field& pressure, const Field& u, const Field& v,
+                                        const Field& pressure, const SurfaceShear& shear,
                                         double dynamicViscosity);
 
 }  // namespace smokebox

@@ -72,18 +72,18 @@ class PressureIntegral {
   std::vector<Box> boxes_;
 };
 
-/// Shear along the cut links: viscosity times (u - wall) / (theta h) over a link's width h.
+/// Shear along the cut links: viscosity times the slope over a link's width h.
 void addShear(const Boundary& boundary, const std::vector<MovingSolid>& solids,
-              const std::vector<CutLink>& links, bool ofU, const Field& velocity, double dynamicViscosity,
-              std::vector<SurfaceForce>& forces) {
+              const std::vector<CutLink>& links, bool ofU, const std::vector<float>& shear,
+              double dynamicViscosity, std::vector<SurfaceForce>& forces) {
   const Grid& grid = boundary.grid;
   auto nearestImage = [](bool periodic, double size, double d) {
     return periodic ? d - size * std::round(d / size) : d;
   };
-  for (const CutLink& link : links) {
+  for (std::size_t k = 0; k < shear.size(); ++k) {
+    const CutLink& link = links[k];
     if (link.solid < 0) continue;
-    const double pull =
-        dynamicViscosity * link.drag * (velocity(link.i, link.j) - link.velocity) / link.theta;
+    const double pull = dynamicViscosity * link.drag * shear[k];
     const Vec2 from = ofU ? grid.xFaceCentre(link.i, link.j) : grid.yFaceCentre(link.i, link.j);
     const Vec2 place =
         from + (link.theta * grid.h) * Vec2{static_cast<double>(link.di), static_cast<double>(link.dj)};
@@ -99,14 +99,14 @@ void addShear(const Boundary& boundary, const std::vector<MovingSolid>& solids,
 }  // namespace
 
 std::vector<SurfaceForce> surfaceForces(const Boundary& boundary, const std::vector<MovingSolid>& solids,
-                                        const Field& pressure, const Field& u, const Field& v,
+                                        const Field& pressure, const SurfaceShear& shear,
                                         double dynamicViscosity) {
   const PressureIntegral integral(boundary, solids, pressure);
   std::vector<SurfaceForce> forces;
   for (std::size_t k = 0; k < solids.size(); ++k) forces.push_back(integral.on(k));
   if (dynamicViscosity == 0) return forces;
-  addShear(boundary, solids, boundary.linksU, true, u, dynamicViscosity, forces);
-  addShear(boundary, solids, boundary.linksV, false, v, dynamicViscosity, forces);
+  addShear(boundary, solids, boundary.linksU, true, shear.u, dynamicViscosity, forces);
+  addShear(boundary, solids, boundary.linksV, false, shear.v, dynamicViscosity, forces);
   // The links see the gradient of each component along the link; the stress has its transpose too, which on a
   // surface that turns with its solid adds up to a torque of -2 mu spin area and no force.
   for (std::size_t k = 0; k < solids.size(); ++k)

@@ -47,6 +47,11 @@ struct Advection::Impl {
     });
   }
 
+  void extendForStencils(const Boundary& boundary, Field& u, Field& v) const {
+    extension.hideCovered(boundary, u, v);
+    extension.apply(boundary, u, v);
+  }
+
   /// One Wicker-Skamarock step of dt, `phiShare` of the whole; u, v extended in, not yet out.
   void rungeKutta(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
                   const Field* accelerationV, double dt, double phiShare,
@@ -63,13 +68,17 @@ struct Advection::Impl {
       s.accelerationScale = static_cast<float>(share * dt);
       stage(boundary, s);
     };
+    extension.hideCovered(boundary, u, v, &hidden);
+    fillMargins(boundary, u, v);
     run(u, v, u1, v1, 1.0 / 3);
-    extension.apply(boundary, u1, v1);
+    extendForStencils(boundary, u1, v1);
     run(u1, v1, u2, v2, 1.0 / 2);
+    extension.reveal(hidden, u2, v2);
     // The increment is that of half this step.
     projectRoughly(u2, v2, phiShare < 1 ? kCyclesInSubStep : kCyclesInStep, 2 / phiShare);
-    extension.apply(boundary, u2, v2);
+    extendForStencils(boundary, u2, v2);
     run(u2, v2, u1, v1, 1);
+    extension.reveal(hidden, u1, v1);
     u.swap(u1);
     v.swap(v1);
   }
@@ -146,6 +155,7 @@ struct Advection::Impl {
 
   ThreadPool& pool;
   VelocityExtension extension;
+  VelocityExtension::Hidden hidden;
   NearFaces near;
   SemiLagrangian semiLagrangian;
   Field u1, v1, u2, v2;       // after the first and the second stage
@@ -167,13 +177,14 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
                                      const Field* accelerationU, const Field* accelerationV, double dt,
                                      const RoughProjection& projectRoughly) {
   Impl& m = *impl_;
-  m.extension.apply(boundary, u, v);
+  m.extension.setWalls(boundary, u, v);  // a surface that starts to move fast counts
   Result result;
   result.courant =
       m.largestSpeed(boundary, u, v, phi, accelerationU, accelerationV, dt) * dt / boundary.grid.h;
   if (result.courant <= kMostSubSteps * kLargestCourant) {
     result.subSteps = std::max(1, static_cast<int>(std::ceil(result.courant / kLargestCourant)));
     const double share = 1.0 / result.subSteps;
+    m.extension.apply(boundary, u, v);
     for (int k = 0; k < result.subSteps; ++k) {
       m.rungeKutta(boundary, u, v, phi, accelerationU, accelerationV, share * dt, share, projectRoughly);
       if (k + 1 < result.subSteps) projectRoughly(u, v, kCyclesBetween, result.subSteps);
@@ -181,6 +192,7 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     }
     return result;
   }
+  m.extension.apply(boundary, u, v, true);
   m.semiLagrangian.carry(boundary, u, v, dt, m.extension.anySolid(), m.u1, m.v1);
   m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt);
   m.extension.apply(boundary, m.u1, m.v1);
@@ -191,6 +203,10 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
 
 void Advection::extend(const Boundary& boundary, Field& u, Field& v) const {
   impl_->extension.apply(boundary, u, v);
+}
+
+void Advection::holdCovered(const Boundary& boundary, Field& u, Field& v, double coefficient) const {
+  impl_->extension.holdCovered(boundary, u, v, coefficient);
 }
 
 std::size_t Advection::bytes() const {

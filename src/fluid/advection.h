@@ -49,6 +49,10 @@ class Advection {
   /// lists of the last rebuild(), with the wall velocities of `boundary`.
   void extend(const Boundary& boundary, Field& u, Field& v) const;
 
+  /// Friction where a surface covers the centre of an open face (see VelocityExtension); `coefficient`:
+  /// viscosity dt / h^2.
+  void holdCovered(const Boundary& boundary, Field& u, Field& v, double coefficient) const;
+
   std::size_t bytes() const;
 
  private:

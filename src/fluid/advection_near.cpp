@@ -10,7 +10,7 @@ namespace {
 // What a stencil may do with the value on a face.
 constexpr std::uint8_t kUnusable = 0;  // deep inside a solid or far beyond a wall
 constexpr std::uint8_t kExtended = 1;  // extended from the fluid: the outer points of third order
-constexpr std::uint8_t kKnown = 2;     // cut by a surface, or in the plane of a wall
+constexpr std::uint8_t kKnown = 2;     // cut by a surface or next behind it, or in the plane of a wall
 constexpr std::uint8_t kRegular = 3;   // fully open, or the image of such a face by symmetry or period
 
 // Small cut cells are given at least this share of a cell's area, so that they do not limit the time step.
@@ -65,7 +65,7 @@ void NearFaces::rebuild(const Boundary& boundary, const VelocityExtension& exten
   pool.blocks(0, 2, 1, [&](int begin, int) {
     findUse(boundary, extension, begin == 0, begin == 0 ? u_.use : v_.use);
   });
-  pool.blocks(0, 2, 1, [&](int begin, int) { findFaces(boundary, begin == 0); });
+  pool.blocks(0, 2, 1, [&](int begin, int) { findFaces(boundary, extension, begin == 0); });
 }
 
 void NearFaces::findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX,
@@ -83,7 +83,7 @@ void NearFaces::findUse(const Boundary& boundary, const VelocityExtension& exten
     const std::uint8_t* depth = layer.row(j);
     for (int i = 0; i < columns; ++i) {
       const int regular = o[i] >= 1 ? kRegular : 0, known = (o[i] > 0 && o[i] < 1) ? kKnown : 0;
-      const int extended = (depth[i] == 2 || depth[i] == 3) ? kExtended : 0;
+      const int extended = depth[i] == 2 ? kKnown : depth[i] == 3 ? kExtended : 0;
       row[i] = static_cast<std::uint8_t>(regular | known | extended);
     }
     if (alongX && !wrapX) {
@@ -119,12 +119,13 @@ void NearFaces::findUse(const Boundary& boundary, const VelocityExtension& exten
   }
 }
 
-void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
+void NearFaces::findFaces(const Boundary& boundary, const VelocityExtension& extension, bool alongX) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
   Component& c = alongX ? u_ : v_;
   const FaceMap& other = alongX ? v_.use : u_.use;
   const Field& open = alongX ? boundary.openX : boundary.openY;
+  const FaceMap& slip = alongX ? extension.slipU() : extension.slipV();
   const int columns = alongX && !wrapX ? nx + 1 : nx, rows = !alongX && !wrapY ? ny + 1 : ny;
   auto wet = [&](Side s) {  // a closed wall whose tangential velocity the flow feels
     const WallKind kind = boundary.side(s).kind;
@@ -164,7 +165,7 @@ void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
       for (int b = 0; b < 2; ++b)
         for (int a = 0; a < 2; ++a)
           around = std::min(around, alongX ? other(i - 1 + a, j + b) : other(i + a, j - 1 + b));
-      face.cut = around != kRegular;
+      face.cut = around != kRegular && slip(i, j);
       if (face.cut) {
         auto share = [&](int a, int b) {
           if (wrapX) a = a < 0 ? a + nx : a >= nx ? a - nx : a;
@@ -174,7 +175,7 @@ void NearFaces::findFaces(const Boundary& boundary, bool alongX) {
         const float volume = 0.5f * (share(i, j) + (alongX ? share(i - 1, j) : share(i, j - 1)));
         face.perVolume = 1 / std::clamp(volume, kSmallestVolume, 1.0f);
       }
-      if (o[i] < 0.5f) {
+      if (o[i] < 0.5f && slip(i, j)) {
         face.order = {first, first, first, first};
       } else {
         auto between = [&](int a, int b, int di, int dj, bool atSide, Side side) {

@@ -5,15 +5,18 @@
 // only the share-weighted fluxes are), and without a limit from small cut cells. Each point takes the highest
 // order its neighbours allow:
 //   fifth    six faces away from any wall
-//   third    four faces of which the inner two are open and the outer two at least extended
+//   third    four faces of which the inner two are open or next to it and the outer two at least extended
 //   first    upwind
 //   inward   a tangential component at the domain's wall: third order through the wall's velocity where the
 //            flow comes in, the face's own value where it goes out
 //   ambient  a normal component at an open side: what comes in was at rest far away, so half of its speed is
 //            lost (Bernoulli's head u^2/2); without that, vortices that leave feed energy back and grow
 //   none     a tangential component at an open side: no gradient across it
-// Beside a surface the flow is the whole flux through a face, the fluid's and the surface's, whose divergence
-// is 0 in cut cells too, over the open area (no less than half a cell's).
+// Beside a surface with drag the stencils read what VelocityExtension makes of the covered faces, to second
+// order, and need no other rule: first-order fluxes there were the largest error of a drag. Beside one
+// without much drag a face that is open by less than half is of first order, and the flow is the whole flux
+// through a face, the fluid's and the surface's, whose divergence is 0 in cut cells too, over the open area
+// (no less than half a cell's): at sharp corners in a fluid without friction anything else grows noise.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -54,7 +57,7 @@ class NearFaces {
   };
 
   void findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX, FaceMap& use) const;
-  void findFaces(const Boundary& boundary, bool alongX);
+  void findFaces(const Boundary& boundary, const VelocityExtension& extension, bool alongX);
   Order orderBetween(const FaceMap& use, int i, int j, int di, int dj, bool atWall) const;
 
   Component u_, v_;

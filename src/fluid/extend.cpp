@@ -46,6 +46,18 @@ void continueBeyond(WallKind kind, bool normal, float wall, float* f, std::ptrdi
   }
 }
 
+/// Marks the faces within two of the ends of a link to a surface with little drag.
+void markSlip(const std::vector<CutLink>& links, FaceMap& slip) {
+  constexpr float kLittle = 0.5f;
+  constexpr int kWide = 2;
+  slip.fill(0);
+  for (const CutLink& link : links) {
+    if (link.solid < 0 || link.drag >= kLittle) continue;
+    for (int j = link.j - kWide; j <= link.j + kWide; ++j)
+      for (int i = link.i - kWide; i <= link.i + kWide; ++i) slip(i, j) = 1;
+  }
+}
+
 void fillMarginsOf(const Boundary& boundary, bool alongX, Field& f) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const SideFlow &left = boundary.side(Side::left), &right = boundary.side(Side::right);
@@ -96,10 +108,7 @@ VelocityExtension::VelocityExtension(const Boundary& boundary, ThreadPool& pool)
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   u_.alongX = true;
   v_.alongX = false;
-  for (Component* c : {&u_, &v_}) {
-    c->layer = FaceMap(nx, ny);
-    c->drag = Field(nx, ny);
-  }
+  for (Component* c : {&u_, &v_}) c->layer = c->slip = FaceMap(nx, ny);
   rebuild(boundary);
 }
 
@@ -112,7 +121,6 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
   const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
   const int columns = c.alongX && !wrapX ? nx + 1 : nx, rows = !c.alongX && !wrapY ? ny + 1 : ny;
   const Field& open = c.alongX ? boundary.openX : boundary.openY;
-  const auto& links = c.alongX ? boundary.linksU : boundary.linksV;
   const std::ptrdiff_t stride = open.stride();
 
   // Where a neighbour lies; false beyond a side that does not wrap.
@@ -143,11 +151,6 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
     }
   }
 
-  for (const CutLink& link : links) {
-    int i = link.i + link.di, j = link.j + link.dj;
-    if (inside(i, j)) c.drag(i, j) = std::max(c.drag(i, j), link.drag);
-  }
-
   static constexpr int kStep[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
   c.front.clear();
   c.ghosts.clear();
@@ -167,30 +170,13 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
       if (beside && !onWall(i, span.j)) c.front.push_back({i, span.j});
     }
   }
-  for (int depth = 1; depth <= kLayers && !c.front.empty(); ++depth) {
-    for (const Vec2i at : c.front) {
-      Ghost ghost;
-      ghost.target = static_cast<int>(at.j * stride + at.i);
-      int walls = 0;
-      for (const auto& step : kStep) {
-        int a = at.i + step[0], b = at.j + step[1];
-        if (!inside(a, b) || c.layer(a, b) == 0 || c.layer(a, b) > depth) continue;
-        const bool along = (step[0] != 0) == c.alongX;
-        if (depth == 1 && along)
-          ++walls;
-        else
-          ghost.sources[ghost.count++] = static_cast<int>(b * stride + a);
-      }
-      const float keep = depth == 1 ? 1 - std::clamp(c.drag(at.i, at.j), 0.0f, 1.0f) : 1.0f;
-      ghost.weight = ghost.count ? keep / static_cast<float>(ghost.count + walls) : 0.0f;
-      ghost.wallShare =
-          ghost.count ? 1 - keep * static_cast<float>(ghost.count) / static_cast<float>(ghost.count + walls)
-                      : 1.0f;
-      c.ghosts.push_back(ghost);
-    }
-    c.layerEnds.push_back(c.ghosts.size());
-    for (const Vec2i at : c.front) c.layer(at.i, at.j) = static_cast<std::uint8_t>(depth + 1);
-    c.next.clear();
+  markSlip(c.alongX ? boundary.linksU : boundary.linksV, c.slip);
+  c.surface.find(boundary, c.alongX, columns, rows, c.front);
+  for (const Vec2i at : c.front) c.layer(at.i, at.j) = 2;
+  for (const Vec2i at : c.surface.deeper) c.layer(at.i, at.j) = 255;  // not yet
+  auto surround = [&] {  // what lies behind the front and behind the faces left over from it
+    c.next.assign(c.surface.deeper.begin(), c.surface.deeper.end());
+    c.surface.deeper.clear();
     for (const Vec2i at : c.front)
       for (const auto& step : kStep) {
         int a = at.i + step[0], b = at.j + step[1];
@@ -198,48 +184,125 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
         c.layer(a, b) = 255;  // taken, so that it is listed once
         c.next.push_back({a, b});
       }
-    for (const Vec2i at : c.next) c.layer(at.i, at.j) = 0;
+    std::erase_if(c.next, [&](Vec2i at) { return c.layer(at.i, at.j) != 255; });
     c.front.swap(c.next);
+  };
+  surround();
+  for (int depth = 2; depth <= kLayers && !c.front.empty(); ++depth) {
+    for (const Vec2i at : c.front) {
+      Ghost ghost;
+      ghost.target = static_cast<int>(at.j * stride + at.i);
+      for (const auto& step : kStep) {
+        int a = at.i + step[0], b = at.j + step[1];
+        if (inside(a, b) && c.layer(a, b) != 0 && c.layer(a, b) <= depth) {
+          int a2 = a + step[0], b2 = b + step[1];
+          ghost.sources[ghost.count] = static_cast<int>(b * stride + a);
+          ghost.behind[ghost.count] = ghost.sources[ghost.count];
+          if (depth == 2 && !c.slip(at.i, at.j) && inside(a2, b2) && c.layer(a2, b2) != 0 &&
+              c.layer(a2, b2) <= c.layer(a, b))
+            ghost.behind[ghost.count] = static_cast<int>(b2 * stride + a2);
+          ++ghost.count;
+        }
+      }
+      ghost.weight = 1 / static_cast<float>(std::max(ghost.count, 1));
+      if (ghost.count > 0) c.ghosts.push_back(ghost);
+    }
+    c.layerEnds.push_back(c.ghosts.size());
+    for (const Vec2i at : c.front) c.layer(at.i, at.j) = static_cast<std::uint8_t>(depth + 1);
+    surround();
   }
-  for (const CutLink& link : links) {
-    int i = link.i + link.di, j = link.j + link.dj;
-    if (inside(i, j)) c.drag(i, j) = 0;
-  }
+  for (const Vec2i at : c.front) c.layer(at.i, at.j) = 0;
 }
 
-void VelocityExtension::apply(const Boundary& boundary, Field& u, Field& v) const {
-  apply(u_, boundary.wallU, u);
-  apply(v_, boundary.wallV, v);
-  fillMargins(boundary, u, v);
+void VelocityExtension::setWalls(const Boundary& boundary, Field& u, Field& v) const {
+  setWalls(u_, boundary.wallU, u);
+  setWalls(v_, boundary.wallV, v);
 }
 
-void VelocityExtension::apply(const Component& c, const Field& wall, Field& f) const {
+void VelocityExtension::setWalls(const Component& c, const Field& wall, Field& f) const {
   pool_.blocks(0, static_cast<int>(c.spans.size()), kSpanGrain, [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {
       const Span s = c.spans[k];
       std::copy(wall.row(s.j) + s.begin, wall.row(s.j) + s.end, f.row(s.j) + s.begin);
     }
   });
+}
+
+void VelocityExtension::apply(const Boundary& boundary, Field& u, Field& v, bool bounded) const {
+  apply(u_, boundary.wallU, boundary.linksU, bounded, u);
+  apply(v_, boundary.wallV, boundary.linksV, bounded, v);
+  fillMargins(boundary, u, v);
+}
+
+void VelocityExtension::apply(const Component& c, const Field& wall, const std::vector<CutLink>& links,
+                              bool bounded, Field& f) const {
+  setWalls(c, wall, f);
   float* data = f.row(0);
-  const float* walls = wall.row(0);
+  const auto& recipes = c.surface.closed;
+  pool_.blocks(0, static_cast<int>(recipes.size()), kGhostGrain, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k)
+      data[recipes[k].target] =
+          bounded ? recipes[k].boundedValue(data, links) : recipes[k].value(data, links);
+  });
   std::size_t from = 0;
   for (const std::size_t to : c.layerEnds) {
     pool_.blocks(static_cast<int>(from), static_cast<int>(to), kGhostGrain, [&](int begin, int end) {
       for (int k = begin; k < end; ++k) {
         const Ghost& g = c.ghosts[k];
         float sum = 0;
-        for (int s = 0; s < g.count; ++s) sum += data[g.sources[s]];
-        data[g.target] = g.wallShare * walls[g.target] + g.weight * sum;
+        for (int s = 0; s < g.count; ++s)
+          sum += bounded ? data[g.sources[s]] : 2 * data[g.sources[s]] - data[g.behind[s]];
+        data[g.target] = g.weight * sum;
       }
     });
     from = to;
   }
 }
 
+void VelocityExtension::hideCovered(const Boundary& boundary, Field& u, Field& v, Hidden* hidden) const {
+  auto hide = [&](const Component& c, const std::vector<CutLink>& links, Field& f, std::vector<float>* kept) {
+    float* data = f.row(0);
+    const auto& recipes = c.surface.covered;
+    if (kept) kept->resize(recipes.size());
+    pool_.blocks(0, static_cast<int>(recipes.size()), kGhostGrain, [&](int begin, int end) {
+      for (int k = begin; k < end; ++k) {
+        float& value = data[recipes[k].target];
+        const float shown = recipes[k].value(data, links);
+        if (kept) (*kept)[k] = value - shown;
+        value = shown;
+      }
+    });
+  };
+  hide(u_, boundary.linksU, u, hidden ? &hidden->u : nullptr);
+  hide(v_, boundary.linksV, v, hidden ? &hidden->v : nullptr);
+}
+
+void VelocityExtension::reveal(const Hidden& hidden, Field& u, Field& v) const {
+  auto show = [](const Component& c, const std::vector<float>& kept, Field& f) {
+    float* data = f.row(0);
+    for (std::size_t k = 0; k < kept.size(); ++k) data[c.surface.covered[k].target] += kept[k];
+  };
+  show(u_, hidden.u, u);
+  show(v_, hidden.v, v);
+}
+
+void VelocityExtension::holdCovered(const Boundary& boundary, Field& u, Field& v, double coefficient) const {
+  auto hold = [&](const Component& c, const std::vector<CutLink>& links, Field& f) {
+    float* data = f.row(0);
+    for (const CoveredFace& face : c.surface.held) {
+      const float wall = links[face.link].velocity, goal = wall + face.share * (data[face.source] - wall);
+      const float pull = static_cast<float>(coefficient) * face.stiffness;
+      data[face.target] = (data[face.target] + pull * goal) / (1 + pull);
+    }
+  };
+  hold(u_, boundary.linksU, u);
+  hold(v_, boundary.linksV, v);
+}
+
 std::size_t VelocityExtension::bytes() const {
   std::size_t total = 0;
   for (const Component* c : {&u_, &v_})
-    total += c->layer.bytes() + c->drag.bytes() + c->spans.capacity() * sizeof(Span) +
+    total += c->layer.bytes() + c->slip.bytes() + c->surface.bytes() + c->spans.capacity() * sizeof(Span) +
              c->ghosts.capacity() * sizeof(Ghost) +
              (c->front.capacity() + c->next.capacity()) * sizeof(Vec2i);
   return total;

@@ -83,6 +83,8 @@ void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {
     }
   });
   viscosity_->diffuse(boundary, u_, v_, viscosity, dt);
+  findSurfaceShear(boundary, u_, v_, shear_);
+  advection_.holdCovered(boundary, u_, v_, viscosity * dt / (boundary.grid.h * boundary.grid.h));
   pool_.blocks(0, ny + 1, kRows, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       findAnew(u_.row(j), viscousU_.row(j));

@@ -64,6 +64,9 @@ class Fluid {
   /// Impulse of the pressure in a step, m/s at cell centres: pressure = density h phi / dt.
   const Field& phi() const { return phi_; }
 
+  /// What friction did at the surfaces in the last step: before the projection, which moves the faces there a
+  /// little, and so the slope a lot where they lie close to the surface. Empty before the first step.
+  const SurfaceShear& shear() const { return shear_; }
   /// A copy of the velocity that also fills the walls' margins and the surroundings of surfaces inside
   /// solids.
   struct ExtendedVelocity {
@@ -78,6 +81,7 @@ class Fluid {
   Field u_, v_, phi_;
   Field accelerationU_, accelerationV_;
   Field viscousU_, viscousV_;  // acceleration by viscosity in the last step, m/s^2
+  SurfaceShear shear_;
   ThreadPool& pool_;
   PressureSolver pressure_;
   Advection advection_;

@@ -30,8 +30,7 @@ struct System {
       toAbove;  // weight of the link to the next face along x and y: 1 or 0; toRight(-1), toAbove(., -1) wrap
   Field wallWeight;                   // sum of the cut links' weights
   std::vector<float> linkWeight;      // of each of the boundary's links
-  std::vector<int> bent;              // links to a wall of the domain along the velocity: see bendAtWalls()
-  std::vector<float> mostBend;        // how far that may move the velocity in a step, m/s
+  std::vector<int> bent;              // cut links with a whole one opposite: see bendAtWalls()
   std::vector<float> bend;            // what each of them adds to the Laplacian, times h^2
   Field unknown;                      // 1 on open faces, 0 elsewhere
   int chunks = 0;                     // in a row
@@ -159,6 +158,12 @@ float linkWeightOf(const CutLink& link) {
   return std::clamp(link.drag, 0.0f, 1.0f) / std::max(link.theta, kShortestLink);
 }
 
+/// What a second difference over a whole link and one of theta lacks of the second derivative:
+/// 2 / (1 + theta) - 1.
+float bendOf(const CutLink& link) {
+  return std::clamp(link.drag, 0.0f, 1.0f) * (1 - link.theta) / (1 + link.theta);
+}
+
 }  // namespace
 
 void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
@@ -198,16 +203,24 @@ void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
     if (link.i >= s.columns || link.j >= s.rows || !(open(link.i, link.j) > 0)) continue;
     s.linkWeight[k] = linkWeightOf(link);
     s.wallWeight(link.i, link.j) += s.linkWeight[k];
-    const bool along = s.alongX ? link.dj != 0 : link.di != 0;
-    if (link.solid < 0 && along && isOpen(link.i - link.di, link.j - link.dj))
-      s.bent.push_back(static_cast<int>(k));
     int i = link.di < 0 ? link.i - 1 : link.i, j = link.dj < 0 ? link.j - 1 : link.j;
     if (i < 0) i += wrapX ? s.columns : 0;
     if (j < 0) j += wrapY ? s.rows : 0;
     (link.di != 0 ? s.toRight : s.toAbove)(i, j) = 0;
   }
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    const CutLink& link = links[k];
+    if (s.linkWeight[k] == 0 || link.theta >= 1) continue;
+    int i = link.di > 0 ? link.i - 1 : link.i, j = link.dj > 0 ? link.j - 1 : link.j;
+    if (i < 0) i += wrapX ? s.columns : 0;
+    if (j < 0) j += wrapY ? s.rows : 0;
+    if ((link.di != 0 ? s.toRight : s.toAbove)(i, j) == 0) continue;
+    s.bent.push_back(static_cast<int>(k));
+    const float more = bendOf(link) * s.linkWeight[k];
+    s.linkWeight[k] += more;
+    s.wallWeight(link.i, link.j) += more;
+  }
   s.bend.assign(s.bent.size(), 0.0f);
-  s.mostBend.assign(s.bent.size(), 0.0f);
   wrap(s, s.toRight);
   wrap(s, s.toAbove);
   findRegular(s);
@@ -217,10 +230,10 @@ void Viscosity::Impl::bendAtWalls(const Boundary& boundary, System& s, const Fie
   const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
   for (std::size_t n = 0; n < s.bent.size(); ++n) {
     const CutLink& link = links[s.bent[n]];
-    const float here = x(link.i, link.j), next = x(link.i - link.di, link.j - link.dj);
-    const float second = (link.velocity - here) / link.theta + (next - here);
-    s.mostBend[n] = std::fabs(link.velocity - here) + std::fabs(next - here);
-    s.bend[n] = (1 - link.theta) / (1 + link.theta) * second;
+    int i = link.i - link.di, j = link.j - link.dj;
+    if (wrapX) i = i < 0 ? i + s.columns : i >= s.columns ? i - s.columns : i;
+    if (wrapY) j = j < 0 ? j + s.rows : j >= s.rows ? j - s.rows : j;
+    s.bend[n] = bendOf(link) * (x(i, j) - x(link.i, link.j));
   }
 }
 
@@ -254,7 +267,7 @@ float Viscosity::Impl::addWalls(const Boundary& boundary, const System& s, float
     largest = std::max(largest, std::fabs(links[k].velocity));
   }
   for (std::size_t n = 0; n < s.bent.size(); ++n)
-    right(links[s.bent[n]].i, links[s.bent[n]].j) += std::clamp(c * s.bend[n], -s.mostBend[n], s.mostBend[n]);
+    right(links[s.bent[n]].i, links[s.bent[n]].j) += c * s.bend[n];
   return largest;
 }
 
@@ -450,6 +463,34 @@ std::size_t Viscosity::bytes() const {
   for (const Field* f : {&impl_->diagonal, &impl_->residual, &impl_->direction, &impl_->product})
     total += f->bytes();
   return total;
+}
+
+void findSurfaceShear(const Boundary& boundary, const Field& u, const Field& v, SurfaceShear& shear) {
+  auto find = [&](const std::vector<CutLink>& links, const Field& open, const Field& f, int columns, int rows,
+                  std::vector<float>& out) {
+    out.resize(links.size());
+    for (std::size_t begin = 0, end; begin < links.size(); begin = end) {
+      const int i = links[begin].i, j = links[begin].j;
+      for (end = begin; end < links.size() && links[end].i == i && links[end].j == j;) ++end;
+      for (std::size_t k = begin; k < end; ++k) {
+        const CutLink& link = links[k];
+        int a = i - link.di, b = j - link.dj;
+        if (boundary.periodicX()) a = a < 0 ? a + columns : a >= columns ? a - columns : a;
+        if (boundary.periodicY()) b = b < 0 ? b + rows : b >= rows ? b - rows : b;
+        const bool joined =
+            a >= 0 && a < columns && b >= 0 && b < rows && open(a, b) > 0 &&
+            std::none_of(links.begin() + static_cast<std::ptrdiff_t>(begin),
+                         links.begin() + static_cast<std::ptrdiff_t>(end),
+                         [&](const CutLink& other) { return other.di == -link.di && other.dj == -link.dj; });
+        const float here = f(i, j) - link.velocity, theta = std::max(link.theta, kShortestLink);
+        out[k] = joined ? here * (1 + theta) / theta - (f(a, b) - link.velocity) * theta / (1 + theta)
+                        : here / theta;
+      }
+    }
+  };
+  const int nx = boundary.grid.nx, ny = boundary.grid.ny;
+  find(boundary.linksU, boundary.openX, u, boundary.periodicX() ? nx : nx + 1, ny, shear.u);
+  find(boundary.linksV, boundary.openY, v, nx, boundary.periodicY() ? ny : ny + 1, shear.v);
 }
 
 void applySurfaceDrag(const Boundary& boundary, Field& u, Field& v) {

@@ -102,7 +102,7 @@ void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScrip
   for (int j = 0; j < grid.ny; ++j)
     for (int i = 0; i < grid.nx; ++i) pressure(i, j) = static_cast<float>(pressureScale * fluid.phi()(i, j));
   const std::vector<SurfaceForce> forces =
-      surfaceForces(boundary, solids.moving(), pressure, fluid.u(), fluid.v(), dynamicViscosity);
+      surfaceForces(boundary, solids.moving(), pressure, fluid.shear(), dynamicViscosity);
   const std::size_t first = out.size();
   listSolids(solids, out);
   auto body = out.begin() + static_cast<std::ptrdiff_t>(first);

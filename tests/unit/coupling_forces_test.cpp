@@ -30,7 +30,9 @@ struct Case {
       }
   }
   SurfaceForce force(double viscosity = 0) const {
-    return surfaceForces(boundary, solids, pressure, u, v, viscosity)[0];
+    SurfaceShear shear;
+    findSurfaceShear(boundary, u, v, shear);
+    return surfaceForces(boundary, solids, pressure, shear, viscosity)[0];
   }
 };
 

@@ -69,29 +69,84 @@ TEST(Extend, ANoSlipWallContinuesAParabolaExactly) {
     for (int i = 0; i <= n; ++i) EXPECT_NEAR(u(i, j), profile((j + 0.5) * h), 2e-5) << i << ' ' << j;
 }
 
-TEST(Extend, ASurfaceSharesItsVelocityByItsDrag) {
-  // Below a floor at y = 1/2 the tangential velocity goes on by 1 - drag and has the floor's by drag; normal
-  // to it, and deep inside, stands the floor's velocity.
+TEST(Extend, ASurfaceContinuesALinearFlowExactly) {
+  // Behind a flat floor without slip, wherever it cuts the cells, a velocity that is linear in space goes on
+  // through the floor's velocity; with less drag it stays between that and the fluid's. Deep inside stands
+  // the floor's.
   const int n = 32;
-  for (const double drag : {0.0, 0.25, 1.0}) {
-    Boundary b = test::makeBox(n, n, 1.0 / n, test::kPeriodic);
-    test::addSolid(
-        b, [](Vec2 p) { return std::fabs(p.y - 0.25) - 0.2501; },
-        [](Vec2) {
-          return Vec2{3, 0.5};
-        },
-        drag);
-    ThreadPool pool(1);
-    Field u(n, n, 1), v(n, n, 0.5f);
-    VelocityExtension(b, pool).apply(b, u, v);
-    for (int i = 0; i < n; ++i) {
-      EXPECT_EQ(u(i, n / 2), 1);
-      for (int depth = 1; depth <= VelocityExtension::kLayers; ++depth)
-        EXPECT_NEAR(u(i, n / 2 - depth), (1 - drag) * 1 + drag * 3, 1e-6) << drag << ' ' << depth;
-      EXPECT_EQ(u(i, n / 4), 3);
-      EXPECT_EQ(v(i, n / 2 - 1), 0.5f);
+  const double h = 1.0 / n;
+  for (const double floor : {0.5001, 0.509, 0.52, 0.53})
+    for (const double drag : {0.0, 0.25, 1.0}) {
+      Boundary b = test::makeBox(n, n, h, test::kPeriodic);
+      test::addSolid(
+          b, [&](Vec2 p) { return std::fabs(p.y - 0.25) - (floor - 0.25); },
+          [](Vec2) {
+            return Vec2{3, 0.5};
+          },
+          drag);
+      // Faces whose centre is covered have no links of their own.
+      for (auto* links : {&b.linksU, &b.linksV})
+        std::erase_if(*links, [&](const CutLink& link) {
+          const double y = (link.j + (links == &b.linksU ? 0.5 : 0.0)) * h;
+          return y < floor;
+        });
+      auto flow = [&](double y) { return 3 + 2 * (y - floor); };  // has the floor's velocity at the floor
+      ThreadPool pool(1);
+      Field u(n, n), v(n, n, 0.5f);
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i <= n; ++i) u(i, j) = static_cast<float>(flow((j + 0.5) * h));
+      const Field before = u;
+      VelocityExtension extension(b, pool);
+      extension.hideCovered(b, u, v);
+      extension.apply(b, u, v);
+      const int first = static_cast<int>(std::floor(floor / h - 0.5));  // the first covered centre
+      for (int i = 0; i < n; ++i)
+        for (int depth = 0; depth < 2; ++depth) {
+          const double straight = flow((first - depth + 0.5) * h);
+          if (drag == 1) {
+            EXPECT_NEAR(u(i, first - depth), straight, 1e-5) << floor << ' ' << depth;
+          } else {
+            EXPECT_GE(u(i, first - depth), straight - 1e-5) << floor << ' ' << drag << ' ' << depth;
+            EXPECT_LE(u(i, first - depth), flow((first + 1.5) * h) + 1e-5) << floor << ' ' << drag;
+          }
+        }
+      EXPECT_EQ(u(5, n / 4), 3);
+      EXPECT_NEAR(v(5, first - 1), 0.5f, 1e-6);
     }
-  }
+}
+
+TEST(Extend, WhatIsHiddenIsGivenBack) {
+  // Faces with covered centres show stencils another value than the one that the projection needs; revealed,
+  // they have it again, and what a stage has added.
+  const int n = 32;
+  Boundary b = test::makeBox(n, n, 1.0 / n, test::kPeriodic);
+  test::addSolid(
+      b,
+      [](Vec2 p) {
+        return length(p - Vec2{0.5, 0.5}) - 0.2;
+      },
+      [](Vec2) { return Vec2{}; }, 1);
+  for (auto* links : {&b.linksU, &b.linksV})
+    std::erase_if(*links, [&](const CutLink& link) {
+      const Vec2 at =
+          links == &b.linksU ? b.grid.xFaceCentre(link.i, link.j) : b.grid.yFaceCentre(link.i, link.j);
+      return length(at - Vec2{0.5, 0.5}) < 0.2;
+    });
+  ThreadPool pool(1);
+  Field u(n, n, 1), v(n, n, 1);
+  VelocityExtension extension(b, pool);
+  VelocityExtension::Hidden hidden;
+  extension.hideCovered(b, u, v, &hidden);
+  ASSERT_GT(hidden.u.size(), 4u);
+  float least = 1;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) least = std::min(least, u(i, j));
+  EXPECT_LT(least, 0);  // behind a surface at rest a flow at 1 goes on below 0
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) u(i, j) += 0.5f;
+  extension.reveal(hidden, u, v);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) EXPECT_NEAR(u(i, j), 1.5f, 1e-6);
 }
 
 }  // namespace
