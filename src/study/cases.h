@@ -10,6 +10,11 @@ std::vector<Study> lidDrivenCavities();
 std::vector<Study> mirrorImages();
 std::vector<Study> fluidsAtRest();
 std::vector<Study> heatedCavities();
+Study steadyCylinder();
+Study sheddingCylinder();
+Study oscillatingCylinder();
+Study turningCylinders();
+Study potentialDisk();
 
 std::vector<Study> allCases();
 
