@@ -1,6 +1,8 @@
 #include "base/part_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -23,6 +25,28 @@ struct CloseFile {
 
 std::string reason() { return std::strerror(errno); }
 
+/// Between the opening and the locking of a file, who had it may have given it its final name.
+bool isStillNamed(int file, const fs::path& name) {
+  struct stat opened = {}, named = {};
+  return ::fstat(file, &opened) == 0 && ::stat(name.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
+/// Makes the file, or takes over what a killed run left, and locks it until it is closed.
+int openAlone(const fs::path& part, const fs::path& target, const fs::path& folder) {
+  for (;;) {
+    const int file = ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (file < 0) throw IoError(target.string() + ": cannot write to " + folder.string() + ": " + reason());
+    // Where a file system has no locks, nothing is known of others.
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      ::close(file);
+      throw IoError(target.string() + ": is being written already, by another run or for another -o");
+    }
+    if (isStillNamed(file, part)) return file;
+    ::close(file);
+  }
+}
+
 }  // namespace
 
 PartFile::PartFile(const fs::path& target) : target_(target) {
@@ -44,15 +68,13 @@ PartFile::PartFile(const fs::path& target) : target_(target) {
   path_ = target_;
   path_ += ".part";
   // Made at once: a folder that takes no files is found before any work is done.
-  const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) throw IoError(target.string() + ": cannot write to " + folder.string() + ": " + reason());
-  ::close(file);
+  lock_ = openAlone(path_, target, folder);
 }
 
 PartFile::~PartFile() {
-  if (direct_ || committed_) return;
   std::error_code ignored;  // a destructor has nobody to tell
-  fs::remove(path_, ignored);
+  if (!direct_ && !committed_) fs::remove(path_, ignored);
+  if (lock_ >= 0) ::close(lock_);  // last: until then the name is ours
 }
 
 void PartFile::commit() {

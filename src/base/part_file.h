@@ -10,7 +10,8 @@ class PartFile {
  public:
   /// Chooses where to write: `<target>.part` in the same folder. A symbolic link is followed. What exists and
   /// is no regular file (a device, a pipe) is written directly, for a rename would replace it. Throws IoError
-  /// if the target is a folder, or its folder is not there or takes no files.
+  /// if the target is a folder, its folder is not there or takes no files, or the target is being written
+  /// already, by another run or under another spelling of its name; what a killed run left is taken over.
   explicit PartFile(const std::filesystem::path& target);
   /// Removes what was written, unless it was committed.
   ~PartFile();
@@ -27,6 +28,7 @@ class PartFile {
  private:
   std::filesystem::path target_, path_;
   bool direct_ = false, committed_ = false;
+  int lock_ = -1;  // held as long as the file is ours: two that wrote to one would spoil it
 };
 
 /// Writes a whole small file so. Throws IoError, also for a full disk.

@@ -127,6 +127,17 @@ TEST_F(Render, RefusesToReplaceAFileUnasked) {
   EXPECT_EQ(decodeFilm(folder / "a.mp4").times.size(), 15u);
 }
 
+TEST_F(Render, OneFileUnderTwoNamesIsRefused) {
+  // Two films cannot be written into one file, also by two runs at once: nothing is spoilt, nothing left.
+  std::filesystem::create_symlink(".", folder / "here");
+  for (const char* other : {"./x.mp4", "here/x.mp4"}) {
+    const RunResult result = render({"-o", "x.mp4", "-o", other});
+    EXPECT_EQ(result.status, 4) << result.err;
+    EXPECT_NE(result.err.find("is being written already"), std::string::npos) << result.err;
+    EXPECT_EQ(written(), std::set<std::string>{"here"});
+  }
+}
+
 TEST_F(Render, FolderThatCannotBeWrittenIsAnInputOutputError) {
   // A file in place of a folder, a folder that is not there, one that takes no files: status 4, and no film
   // beside.
