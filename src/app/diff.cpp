@@ -111,9 +111,13 @@ void checkOutput(const DiffOptions& options, bool pictures) {
   if (kind == OutputKind::y4m) throw UsageError("-o -: standard output has the words; name a file");
   if (pictures && kind != OutputKind::pngStill)
     throw UsageError("-o " + options.output + ": two pictures differ by a picture; name a .png");
+  // Absolute first: what is not there, such as a pattern, keeps the spelling of a relative name.
   std::error_code error;
+  const auto plain = [&](const std::string& file) {
+    return fs::weakly_canonical(fs::absolute(file, error), error);
+  };
   for (const std::string& input : {options.a, options.b})
-    if (fs::weakly_canonical(options.output, error) == fs::weakly_canonical(input, error) && !error)
+    if (plain(options.output) == plain(input) && !error)
       throw UsageError("-o " + options.output + ": is one of the two that are compared");
   if (!options.replace) refuseExisting(options.output);
 }

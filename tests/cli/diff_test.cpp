@@ -264,6 +264,7 @@ TEST_F(Diff, WrongUsageHasStatusTwo) {
       {{"a.png", "a.png", "-o", "d/%d.png"}, "name a .png"},
       {{"a.png", "a.png", "-o", "a.png", "-y"}, "is one of the two"},
       {{"a.png", "a.png", "-o", "./a.png", "-y"}, "is one of the two"},
+      {{"%d.png", "%d.png", "-o", "./%d.png", "-y"}, "is one of the two"},
       {{a, a, "-o", "d.avi"}, "'.avi'"},
       {{a, a, "-o", "-"}, "name a file"},
       {{a, a, "--tolerance", "3"}, "--tolerance"}};
