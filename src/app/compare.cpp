@@ -144,10 +144,12 @@ std::function<PaintFrame()> paintSheet(const SheetLayout& layout, const std::vec
   };
 }
 
-std::vector<std::string> labelsOf(const std::vector<Variant>& variants, bool difference) {
-  std::vector<std::string> labels;
-  for (const Variant& variant : variants) labels.push_back(variant.label);
-  if (difference) labels.push_back(variants.size() == 2 ? "difference" : "largest difference from the first");
+std::vector<std::string> labelsOf(const std::vector<Variant>& variants, bool difference,
+                                  const SheetLayout& layout) {
+  const auto fit = [&](const std::vector<std::string>& labels) { return labelsFit(layout, labels); };
+  std::vector<std::string> labels = panelLabels(variants, fit);
+  const std::string longer = "largest difference from the first";
+  if (difference) labels.push_back(variants.size() > 2 && fit({longer}) ? longer : "difference");
   return labels;
 }
 
@@ -180,8 +182,8 @@ int runCompare(const CompareOptions& options) {
   refuseTooLarge(specs);
 
   const SceneSpec& spec = specs.front();
-  const std::vector<std::string> labels = labelsOf(variants, options.difference);
-  const SheetLayout layout = layOut(static_cast<int>(labels.size()), spec.output.width, spec.output.height);
+  const int panels = static_cast<int>(variants.size()) + options.difference;
+  const SheetLayout layout = layOut(panels, spec.output.width, spec.output.height);
   const Outputs outputs = outputsOf(options, spec);
   refuseReplacing(options, outputs);
   std::vector<FilmOutput> films = opened(outputs, formatOf(options, document, spec, layout));
@@ -196,9 +198,12 @@ int runCompare(const CompareOptions& options) {
     const int threadsEach = std::max(1, options.threads / runs);
     const FilmRanges ranges =
         commonRanges(scenes, threadsEach, [&](long done, long of) { progress.showPreparing(done, of); });
+    std::vector<std::string> names;
+    for (const Variant& variant : variants) names.push_back(variant.label);
     FilmPipeline pipeline(runs, std::move(films),
-                          paintSheet(layout, labels, spec.view.background, options.difference, backend));
-    FilmRuns simulations(scenes, labels, threadsEach, ranges, pipeline);
+                          paintSheet(layout, labelsOf(variants, options.difference, layout),
+                                     spec.view.background, options.difference, backend));
+    FilmRuns simulations(scenes, names, threadsEach, ranges, pipeline);
     for (long frame = 0; frame <= last; ++frame) {
       throwIfInterrupted();
       if (std::any_of(wanted.begin(), wanted.end(), [&](const FrameRange& f) { return f.has(frame); })) {

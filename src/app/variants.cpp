@@ -1,6 +1,7 @@
 #include "app/variants.h"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 #include "base/errors.h"
@@ -94,6 +95,27 @@ std::vector<Variant> variantsOf(const std::vector<std::string>& varied) {
         "--vary: there is nothing to compare with; give two values or more: --vary "
         "fluid.vorticity=0.3,0");
   return variants;
+}
+
+std::vector<std::string> panelLabels(const std::vector<Variant>& variants,
+                                     const std::function<bool(const std::vector<std::string>&)>& fit) {
+  std::vector<std::string> whole, lastSteps, values;
+  bool alike = false;
+  for (const Variant& variant : variants) {
+    std::string byLastStep, byValue;
+    std::set<std::string> ends;
+    for (const auto& [key, value] : variant.settings) {
+      const std::string end = key.substr(key.rfind('.') + 1), comma = byValue.empty() ? "" : ", ";
+      alike |= !ends.insert(end).second;
+      byLastStep += comma + end + " = " + value;
+      byValue += comma + value;
+    }
+    whole.push_back(variant.label);
+    lastSteps.push_back(std::move(byLastStep));
+    values.push_back(std::move(byValue));
+  }
+  if (fit(whole)) return whole;
+  return !alike && fit(lastSteps) ? lastSteps : values;
 }
 
 std::vector<SceneDocument> variantScenes(const SceneDocument& scene, const std::vector<Variant>& variants) {

@@ -33,6 +33,12 @@ std::array<std::uint8_t, 4> bytesOf(const Color& c) {
   return {byte(c.r), byte(c.g), byte(c.b), 255};
 }
 
+int fontSize(const SheetLayout& layout) {
+  return std::max(static_cast<int>(std::lround(layout.labelHeight * kFont / kLabel)), kSmallestFont);
+}
+int marginOf(int fontSize) { return fontSize / 2; }
+int roomOf(const SheetLayout& layout) { return layout.panelWidth - 2 * marginOf(fontSize(layout)); }
+
 /// The label, shortened until it is no wider than `most` pixels.
 std::string fitted(TextPainter& text, std::string label, int size, int most) {
   if (text.advance(label, size, FontWeight::bold) <= most) return label;
@@ -76,6 +82,13 @@ SheetLayout layOut(int panels, int width, int height) {
   return best;
 }
 
+bool labelsFit(const SheetLayout& layout, const std::vector<std::string>& labels) {
+  TextPainter text;
+  return std::all_of(labels.begin(), labels.end(), [&](const std::string& label) {
+    return text.advance(label, fontSize(layout), FontWeight::bold) <= roomOf(layout);
+  });
+}
+
 SheetPainter::SheetPainter(const SheetLayout& layout, const std::vector<std::string>& labels,
                            const Color& ground)
     : layout_(layout), empty_(layout.width, layout.height) {
@@ -88,11 +101,8 @@ SheetPainter::SheetPainter(const SheetLayout& layout, const std::vector<std::str
 
 void SheetPainter::write(const std::string& label, int panel, const Color& ink) {
   TextPainter text;
-  const int size =
-      std::max(static_cast<int>(std::lround(layout_.labelHeight * kFont / kLabel)), kSmallestFont);
-  const int margin = size / 2;
-  const TextMask line =
-      text.line(fitted(text, label, size, layout_.panelWidth - 2 * margin), size, FontWeight::bold);
+  const int size = fontSize(layout_), margin = marginOf(size);
+  const TextMask line = text.line(fitted(text, label, size, roomOf(layout_)), size, FontWeight::bold);
   // Baselines are at one height, whatever letters a label has.
   const int left = layout_.left(panel) + margin - line.originX;
   const int top =

@@ -27,9 +27,12 @@ struct SheetLayout {
 /// sheet is cut to them. Throws UsageError if nothing can be seen on them.
 SheetLayout layOut(int panels, int width, int height);
 
+/// No label would be cut at the end of its panel. Throws IoError if there are no fonts.
+bool labelsFit(const SheetLayout& layout, const std::vector<std::string>& labels);
+
 class SheetPainter {
  public:
-  /// One label for each panel. Throws IoError if there are no fonts.
+  /// One label for each panel, cut at its end. Throws IoError if there are no fonts.
   SheetPainter(const SheetLayout& layout, const std::vector<std::string>& labels, const Color& ground);
   /// `panels`: one picture for each label, of the layout's size.
   void paint(const std::vector<Image>& panels, Image& sheet) const;

@@ -114,6 +114,8 @@ TEST(Sheet, LabelsAreLegibleOnDarkAndLightAndEndBeforeTheirPanelDoes) {
     EXPECT_GT(inkOf(sheet, layout, 1).last, layout.panelWidth * 8 / 10);
     EXPECT_LT(inkOf(sheet, layout, 1).last, layout.panelWidth);
   }
+  EXPECT_TRUE(labelsFit(layout, {"vorticity = 0", ""}));
+  EXPECT_FALSE(labelsFit(layout, {"vorticity = 0", std::string(400, 'w')}));
 }
 
 }  // namespace

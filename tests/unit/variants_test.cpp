@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/errors.h"
 
 namespace smokebox {
@@ -47,6 +49,26 @@ TEST(Variants, WhatCannotBeComparedIsRefusedWithAReason) {
   EXPECT_NE(messageOf({"a=1,2", "a=3,4"}).find("twice"), std::string::npos);
   EXPECT_NE(messageOf({"a=1,2,3,4", "b=1,2,3"}).find("more than 9"), std::string::npos);
   EXPECT_EQ(messageOf({"a=1,2,3", "b=1,2,3"}), "no error");
+}
+
+TEST(Variants, LabelsGetShorterBeforeTheyLoseAValue) {
+  // Truth: where labels do not fit they lose the beginnings of the keys, then the keys; never a value, nor
+  // what tells two keys apart.
+  const auto labels = [](const std::vector<std::string>& varied, std::size_t room) {
+    return panelLabels(variantsOf(varied),
+                       [&](const std::vector<std::string>& all) {
+                         return std::all_of(all.begin(), all.end(),
+                                            [&](const auto& one) { return one.size() <= room; });
+                       })
+        .back();
+  };
+  const std::vector<std::string> varied{"fluid.vorticity=0,1", "smoke.buoyancy=2,33"};
+  EXPECT_EQ(labels(varied, 80), "fluid.vorticity = 1, smoke.buoyancy = 33");
+  EXPECT_EQ(labels(varied, 30), "vorticity = 1, buoyancy = 33");
+  EXPECT_EQ(labels(varied, 20), "1, 33");
+  EXPECT_EQ(labels(varied, 0), "1, 33");
+  EXPECT_EQ(labels({"title=a,b"}, 4), "b");
+  EXPECT_EQ(labels({"solids.a.angle=1,2", "solids.b.angle=3,4"}, 25), "2, 4");
 }
 
 constexpr const char* kScene = R"(
