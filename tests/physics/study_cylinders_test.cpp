@@ -70,12 +70,12 @@ TEST(StudyCylindersSlow, SlipIsOfSecondOrder) {
 TEST(StudyCylindersSlow, VorticesAreShedAsInTheBenchmark) {
   // Truth: DFG 2D-2, FeatFlow's finest level.
   const StudyOutcome coarse = run("shedding-cylinder", 20), fine = run("shedding-cylinder", 30);
-  EXPECT_LT(coarse.metric("largest drag").error, 0.05);
-  EXPECT_LT(coarse.metric("largest lift").error, 0.07);
-  EXPECT_LT(coarse.metric("Strouhal number").error, 0.02);
-  EXPECT_LT(fine.metric("largest drag").error, 0.03);
-  EXPECT_LT(fine.metric("largest lift").error, 0.05);
-  EXPECT_LT(fine.metric("Strouhal number").error, 0.015);
+  EXPECT_LT(coarse.metric("largest drag").error, 0.01);
+  EXPECT_LT(coarse.metric("largest lift").error, 0.03);
+  EXPECT_LT(coarse.metric("Strouhal number").error, 0.005);
+  EXPECT_LT(fine.metric("largest drag").error, 0.012);
+  EXPECT_LT(fine.metric("largest lift").error, 0.025);
+  EXPECT_LT(fine.metric("Strouhal number").error, 0.005);
 }
 
 TEST(StudyCylindersSlow, AnOscillatingCylinderFeelsTheMeasuredForces) {
@@ -84,7 +84,7 @@ TEST(StudyCylindersSlow, AnOscillatingCylinderFeelsTheMeasuredForces) {
   EXPECT_LT(outcome.metric("drag").error, 0.03);
   EXPECT_LT(outcome.metric("inertia").error, 0.03);
   EXPECT_LT(outcome.metric("peak force").error, 0.03);
-  EXPECT_LT(outcome.metric("noise of the force").error, 0.04);
+  EXPECT_LT(outcome.metric("noise of the force").error, 0.03);
 }
 
 }  // namespace
