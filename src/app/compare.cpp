@@ -31,6 +31,7 @@ namespace {
 /// What is to be written, and the frames that each takes.
 struct Outputs {
   std::vector<std::pair<std::string, FrameRange>> films, stills;
+  bool stillsNamed = true;  // after an -o; else they are in renders/, and renewed
 
   std::vector<std::string> names() const {
     std::vector<std::string> all;
@@ -78,7 +79,10 @@ Outputs outputsOf(const CompareOptions& options, const SceneSpec& spec) {
   }
   const std::string compared = spec.name + "-compare";
   if (options.outputs.empty()) outputs.films.emplace_back(inRenders(compared + ".mp4"), film);
-  if (stems.empty() && !stillFrames.empty()) stems.push_back(beside.empty() ? inRenders(compared) : beside);
+  if (stems.empty() && !stillFrames.empty()) {
+    outputs.stillsNamed = !beside.empty();
+    stems.push_back(outputs.stillsNamed ? beside : inRenders(compared));
+  }
   for (const std::string& stem : stems)
     for (std::size_t k = 0; k < stillFrames.size(); ++k)
       outputs.stills.emplace_back(stillName(stem, options.stills[k]), stillFrames[k]);
@@ -88,7 +92,9 @@ Outputs outputsOf(const CompareOptions& options, const SceneSpec& spec) {
 /// Files that were not named with -o are renewed.
 void refuseReplacing(const CompareOptions& options, const Outputs& outputs) {
   if (options.replace || options.outputs.empty()) return;
-  for (const std::string& name : outputs.names()) refuseExisting(name);
+  for (const auto& [name, frames] : outputs.films) refuseExisting(name);
+  for (const auto& [name, frames] : outputs.stills)
+    if (outputs.stillsNamed) refuseExisting(name);
 }
 
 std::vector<FilmOutput> opened(const Outputs& outputs, const FilmFormat& format) {

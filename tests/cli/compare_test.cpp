@@ -175,6 +175,16 @@ TEST_F(Compare, RefusesToReplaceWhatWasNamed) {
   EXPECT_NE(fileText(folder / "x-0.2.png"), "mine");
 }
 
+TEST_F(Compare, RenewsStillsThatWereNotNamed) {
+  // Truth: beside a folder of frames the stills go to renders/, as without -o, and are replaced unasked.
+  for (const char* frames : {"f/%05d.png", "g/%05d.png"}) {
+    const RunResult result =
+        compare({"--vary", "fluid.vorticity=0,1", "--stills", "0.1", "--frames", "0-3", "-o", frames});
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "renders/scene-compare-0.1.png"));
+}
+
 TEST_F(Compare, AnInterruptLeavesNothing) {
   // Truth: Ctrl-C ends it with status 130 and no file.
   ProgramRun run({"compare", "scene.yaml", "--vary", "fluid.vorticity=0,1", "--set", "time.duration=2000",
