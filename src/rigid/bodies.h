@@ -1,0 +1,53 @@
+// The state of all bodies, as the stages of a sub-step share it: arrays indexed by the body's number.
+//
+// Within a step a body's place is that at the step's start and what it has moved since; velocities belong to
+// the middle of a sub-step (leapfrog).
+#pragma once
+#include <vector>
+
+#include "rigid/system.h"
+
+namespace smokebox {
+
+/// Velocity (m/s, rad/s), or a displacement (m, rad). 32 bytes: one load brings it whole.
+struct alignas(32) Motion {
+  double x = 0, y = 0, turn = 0, unused = 0;
+  Vec2 linear() const { return {x, y}; }
+};
+
+struct InverseMass {
+  double mass = 0, inertia = 0;  // 1/kg, 1/(kg m^2); both 0 for what nothing moves
+};
+
+struct Bodies {
+  std::vector<BodyDef> def;
+  std::vector<Motion> velocity;  // now
+  std::vector<Motion> moved;     // since the step began
+  std::vector<InverseMass> inverse;
+  std::vector<Vec2> position;  // at the start of the step
+  std::vector<double> angleRad;
+  std::vector<Turn> turn;  // of angleRad
+  std::vector<char> there;
+
+  int count() const { return static_cast<int>(def.size()); }
+  bool moves(int body) const { return inverse[body].mass > 0; }
+  Vec2 positionNow(int body) const { return position[body] + moved[body].linear(); }
+  double angleNow(int body) const { return angleRad[body] + moved[body].turn; }
+  Frame frameNow(int body) const {
+    return {positionNow(body), moved[body].turn == 0 ? turn[body] : turnBy(angleNow(body))};
+  }
+  /// Of a point of the body at `arm` from its centre of mass.
+  Vec2 velocityAt(int body, Vec2 arm) const {
+    const Motion& v = velocity[body];
+    return {v.x - v.turn * arm.y, v.y + v.turn * arm.x};
+  }
+  void push(int body, Vec2 arm, Vec2 impulse) {
+    Motion& v = velocity[body];
+    const InverseMass& m = inverse[body];
+    v.x += m.mass * impulse.x;
+    v.y += m.mass * impulse.y;
+    v.turn += m.inertia * cross(arm, impulse);
+  }
+};
+
+}  // namespace smokebox
