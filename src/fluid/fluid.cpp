@@ -54,11 +54,11 @@ void Fluid::addConfinement(const Boundary& boundary, double strength, double len
 }
 
 void Fluid::advect(const Boundary& boundary, double dt) {
-  advection_.advance(boundary, u_, v_, phi_, parts_.forced ? &accelerationU_ : nullptr,
-                     parts_.forced ? &accelerationV_ : nullptr, dt,
-                     [&](Field& u, Field& v, int cycles, double gain) {
-                       pressure_.projectRoughly(boundary, u, v, cycles, &phi_, gain);
-                     });
+  carried_ = advection_.advance(boundary, u_, v_, phi_, parts_.forced ? &accelerationU_ : nullptr,
+                                parts_.forced ? &accelerationV_ : nullptr, dt,
+                                [&](Field& u, Field& v, int cycles, double gain) {
+                                  pressure_.projectRoughly(boundary, u, v, cycles, &phi_, gain);
+                                });
 }
 
 void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {

@@ -64,6 +64,9 @@ class Fluid {
   /// Impulse of the pressure in a step, m/s at cell centres: pressure = density h phi / dt.
   const Field& phi() const { return phi_; }
 
+  /// How the last step was cut into sub-steps, and why.
+  const Advection::Result& carried() const { return carried_; }
+
   /// What friction did at the surfaces in the last step: before the projection, which moves the faces there a
   /// little, and so the slope a lot where they lie close to the surface. Empty before the first step.
   const SurfaceShear& shear() const { return shear_; }
@@ -82,6 +85,7 @@ class Fluid {
   Field accelerationU_, accelerationV_;
   Field viscousU_, viscousV_;  // acceleration by viscosity in the last step, m/s^2
   SurfaceShear shear_;
+  Advection::Result carried_;
   ThreadPool& pool_;
   PressureSolver pressure_;
   Advection advection_;

@@ -3,39 +3,20 @@
 // 100 of 200 steps count. Counters: times_faster, and milliseconds of each stage.
 #include <benchmark/benchmark.h>
 
-#include <chrono>
 #include <map>
 #include <string>
 
+#include "plume_scene.h"
 #include "stam_step.h"
 #include "world/world.h"
 
 namespace smokebox {
 namespace {
 
+using test::plume;
+using test::seconds;
+
 constexpr int kWarm = 100, kCounted = 100, kTurn = 10;
-
-std::string plume(int n, int stepsASecond) {
-  return "domain: {size: [1, 1], resolution: " + std::to_string(n) +
-         R"(}
-walls: {top: open}
-time: {duration: 100, step: 1/)" +
-         std::to_string(stepsASecond) + R"(}
-gravity: [0, -9.81]
-fluid: {vorticity: 0.3}
-smoke:
-  buoyancy: 0.6
-  sources: [{shape: {circle: {center: [0.5, 0.1], radius: 0.05}}, rate: 2}]
-solids: [{name: disk, shape: {circle: {radius: 0.1}}, position: [0.52, 0.5]}]
-output: {fps: 20}
-)";
-}
-
-double seconds(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void stepAgainstStam(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
