@@ -1,0 +1,200 @@
+#include "rigid/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace smokebox {
+namespace {
+
+double area(Vec2 a, Vec2 b, Vec2 c) { return cross(b - a, c - a); }
+
+bool within(Vec2 a, Vec2 b, Vec2 c, Vec2 p) {
+  return area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
+}
+
+bool inside(const std::vector<Vec2>& points, const std::vector<int>& loop, Vec2 p) {
+  bool in = false;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec2 a = points[loop[k]], b = points[loop[k + 1 < loop.size() ? k + 1 : 0]];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) in = !in;
+  }
+  return in;
+}
+
+int rightmost(const std::vector<Vec2>& points, const std::vector<int>& loop) {
+  int best = 0;
+  for (int k = 1; k < static_cast<int>(loop.size()); ++k)
+    if (points[loop[k]].x > points[loop[best]].x) best = k;
+  return best;
+}
+
+/// A corner of `loop` that is seen from `from`, a corner of a hole, looking to the right.
+int visibleCorner(const std::vector<Vec2>& points, const std::vector<int>& loop, Vec2 from) {
+  const int n = static_cast<int>(loop.size());
+  int best = -1;
+  double nearest = 1e300;
+  for (int k = 0; k < n; ++k) {  // the edge that the ray hits first runs upwards
+    const Vec2 a = points[loop[k]], b = points[loop[(k + 1) % n]];
+    if (!(a.y <= from.y && b.y > from.y)) continue;
+    const double x = a.x + (from.y - a.y) / (b.y - a.y) * (b.x - a.x);
+    if (x < from.x || x >= nearest) continue;
+    nearest = x;
+    best = a.x > b.x ? k : (k + 1) % n;
+  }
+  if (best < 0) return -1;
+  // Corners within the triangle of the ray may hide it: the one of the least slope is seen.
+  const Vec2 hit{nearest, from.y}, seen = points[loop[best]];
+  const bool above = seen.y > from.y;
+  int result = best;
+  double steepest = 1e300, closest = 1e300;
+  for (int k = 0; k < n; ++k) {
+    const Vec2 p = points[loop[k]];
+    if (p == seen || p.x < from.x) continue;
+    const bool hides = above ? within(from, hit, seen, p) : within(from, seen, hit, p);
+    if (!hides) continue;
+    const Vec2 before = points[loop[(k + n - 1) % n]], after = points[loop[(k + 1) % n]];
+    if (area(before, p, after) > 0) continue;  // convex: another hides too
+    const double slope = std::fabs(p.y - from.y) / std::max(p.x - from.x, 1e-300);
+    if (slope < steepest || (slope == steepest && p.x < closest)) {
+      steepest = slope;
+      closest = p.x;
+      result = k;
+    }
+  }
+  return result;
+}
+
+/// Corners of one region in order, with every hole reached over a bridge and back.
+void joinHole(const std::vector<Vec2>& points, std::vector<int>& loop, const std::vector<int>& hole) {
+  const int start = rightmost(points, hole);
+  const int at = visibleCorner(points, loop, points[hole[start]]);
+  if (at < 0) return;
+  std::vector<int> bridge;
+  for (std::size_t k = 0; k <= hole.size(); ++k) bridge.push_back(hole[(start + k) % hole.size()]);
+  bridge.push_back(loop[at]);
+  loop.insert(loop.begin() + at + 1, bridge.begin(), bridge.end());
+}
+
+class EarClipper {
+ public:
+  EarClipper(const std::vector<Vec2>& points, const std::vector<int>& loop)
+      : points_(points), loop_(loop), left_(static_cast<int>(loop.size())) {
+    next_.resize(left_);
+    previous_.resize(left_);
+    reflex_.resize(left_);
+    for (int k = 0; k < left_; ++k) {
+      next_[k] = k + 1 < left_ ? k + 1 : 0;
+      previous_[k] = k > 0 ? k - 1 : left_ - 1;
+    }
+    for (int k = 0; k < left_; ++k) reflex_[k] = !(turn(k) > 0);
+    for (int k = 0; k < left_; ++k)
+      if (reflex_[k]) reflexCorners_.push_back(k);
+  }
+
+  void clip(std::vector<std::array<int, 3>>& triangles) {
+    int at = 0, refused = 0;
+    while (left_ > 3) {
+      const bool ear = !reflex_[at] && isEar(at);
+      if (!ear && refused < left_) {
+        ++refused;
+        at = next_[at];
+        continue;
+      }
+      if (!ear)
+        at = flattest();  // rounding or outlines that touch: the region cannot be cut cleanly, but it ends
+      const int after = next_[at];
+      cut(at, triangles);
+      refused = 0;
+      at = next_[after];  // every other corner: fewer slivers
+    }
+    if (left_ == 3) add(at, triangles);
+  }
+
+ private:
+  Vec2 point(int k) const { return points_[loop_[k]]; }
+  double turn(int k) const { return area(point(previous_[k]), point(k), point(next_[k])); }
+
+  bool isEar(int k) {
+    const Vec2 a = point(previous_[k]), b = point(k), c = point(next_[k]);
+    const double loX = std::min({a.x, b.x, c.x}), hiX = std::max({a.x, b.x, c.x});
+    const double loY = std::min({a.y, b.y, c.y}), hiY = std::max({a.y, b.y, c.y});
+    std::erase_if(reflexCorners_, [this](int r) { return !reflex_[r]; });
+    for (int r : reflexCorners_) {
+      const Vec2 p = point(r);
+      if (p.x < loX || p.x > hiX || p.y < loY || p.y > hiY) continue;
+      if (p == a || p == b || p == c) continue;
+      if (within(a, b, c, p)) return false;
+    }
+    return true;
+  }
+
+  int flattest() const {
+    int best = -1;
+    for (int k = 0; k < static_cast<int>(loop_.size()); ++k) {
+      if (next_[k] < 0) continue;
+      if (best < 0 || std::fabs(turn(k)) < std::fabs(turn(best))) best = k;
+    }
+    return best;
+  }
+
+  void add(int k, std::vector<std::array<int, 3>>& triangles) const {
+    if (turn(k) > 0) triangles.push_back({loop_[previous_[k]], loop_[k], loop_[next_[k]]});
+  }
+
+  void cut(int k, std::vector<std::array<int, 3>>& triangles) {
+    add(k, triangles);
+    const int before = previous_[k], after = next_[k];
+    next_[before] = after;
+    previous_[after] = before;
+    reflex_[k] = 0;
+    next_[k] = -1;  // gone
+    --left_;
+    for (int neighbour : {before, after}) {
+      const bool was = reflex_[neighbour] != 0, is = !(turn(neighbour) > 0);
+      reflex_[neighbour] = is;
+      if (is && !was) reflexCorners_.push_back(neighbour);
+    }
+  }
+
+  const std::vector<Vec2>& points_;
+  const std::vector<int>& loop_;
+  std::vector<int> next_, previous_, reflexCorners_;
+  std::vector<char> reflex_;
+  int left_;
+};
+
+}  // namespace
+
+std::vector<std::array<int, 3>> triangulate(const std::vector<Vec2>& points, const std::vector<int>& ends) {
+  std::vector<std::vector<int>> outer, holes;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    std::vector<int> loop;
+    Outline outline;
+    for (int i = k > 0 ? ends[k - 1] : 0; i < ends[k]; ++i) {
+      loop.push_back(i);
+      outline.push_back(points[i]);
+    }
+    if (loop.size() < 3) continue;
+    (signedArea(outline) > 0 ? outer : holes).push_back(std::move(loop));
+  }
+  // Holes that lie farthest to the right first: the way to the right of each is then within the region.
+  std::sort(holes.begin(), holes.end(), [&](const auto& a, const auto& b) {
+    const double xa = points[a[rightmost(points, a)]].x, xb = points[b[rightmost(points, b)]].x;
+    return xa != xb ? xa > xb : a[0] < b[0];
+  });
+  std::vector<std::vector<int>> surroundings = outer;
+  for (const std::vector<int>& hole : holes) {
+    int best = -1;
+    for (std::size_t k = 0; k < outer.size(); ++k) {
+      if (!inside(points, outer[k], points[hole[rightmost(points, hole)]])) continue;
+      if (best < 0 || inside(points, outer[best], points[outer[k][0]])) best = static_cast<int>(k);
+    }
+    if (best >= 0) joinHole(points, surroundings[best], hole);
+  }
+  std::vector<std::array<int, 3>> triangles;
+  for (const std::vector<int>& loop : surroundings) EarClipper(points, loop).clip(triangles);
+  return triangles;
+}
+
+}  // namespace smokebox
