@@ -131,6 +131,14 @@ void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& lay
     case LayerKind::probes:
       probes.draw(snapshot, layer, frame);
       break;
+    case LayerKind::bodies:
+    case LayerKind::particles:
+    case LayerKind::springs:
+    case LayerKind::joints:
+    case LayerKind::cloth:
+    case LayerKind::trails:
+    case LayerKind::collisions:
+      break;
     case LayerKind::caption:
     case LayerKind::time:
       break;  // on top of everything

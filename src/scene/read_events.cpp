@@ -1,28 +1,14 @@
 // events
 #include <algorithm>
 
+#include "scene/names.h"
 #include "scene/nearest.h"
+#include "scene/read_rigid_events.h"
 #include "scene/read_shape.h"
 #include "scene/sections.h"
 
 namespace smokebox {
 namespace {
-
-/// When an event happens, and where its actions go: one action each.
-struct EventReader {
-  MapReader& map;
-  SceneSpec& spec;
-  EventSpec when;
-
-  Reader& reader() { return map.reader(); }
-  std::string name(const std::string& key) const { return inside(map.name(), key); }
-  template <class Action>
-  void add(Action action) {
-    EventSpec event = when;
-    event.action = std::move(action);
-    spec.events.push_back(std::move(event));
-  }
-};
 
 void readTimes(EventReader& event) {
   MapReader& map = event.map;
@@ -97,31 +83,23 @@ void readForce(EventReader& event, const YamlNode& node) {
   event.add(std::move(force));
 }
 
-/// One name or a list of them; each goes to `take`.
-template <class Take>
-void readNames(EventReader& event, const YamlNode& node, const std::string& key, Take take) {
-  auto one = [&](const YamlNode& item, const std::string& called) {
-    if (const auto name = event.reader().text(item, called)) take(item, *name);
-  };
-  if (node.kind != YamlNode::Kind::list) return one(node, event.name(key));
-  for (std::size_t k = 0; k < node.items.size(); ++k)
-    one(*node.items[k], inside(event.name(key), std::to_string(k)));
-}
-
-/// A solid or a layer of the view. Showing a layer is setting its `shown`, so that the later event of any
-/// kind wins.
+/// A solid, a body, a particle, a cloth or a layer of the view. Showing a layer is setting its `shown`, so
+/// that the later event of any kind wins.
 void readVisibility(EventReader& event, const YamlNode& node, const std::string& key, bool visible) {
   Reader& reader = event.reader();
   const std::vector<std::string>& layers = event.spec.view.layerNames;
   readNames(event, node, key, [&](const YamlNode& item, const std::string& name) {
-    std::vector<std::string> known;
-    for (const SolidSpec& solid : event.spec.solids) known.push_back(solid.name);
-    const bool isSolid = std::find(known.begin(), known.end(), name) != known.end();
+    std::vector<std::string> known = namesOfThings(event.spec, true);
+    const auto& solids = event.spec.solids;
+    const bool isSolid =
+        std::any_of(solids.begin(), solids.end(), [&](const SolidSpec& solid) { return solid.name == name; });
+    const bool isThing = isSolid || isMovable(event.spec, name);
     const bool isLayer = std::find(layers.begin(), layers.end(), name) != layers.end();
-    if (isSolid && isLayer)
-      reader.warning(item.mark, "`" + name + "` is a solid and a layer: the solid is meant",
-                     "rename the solid, or set: {view.layers." + name + ".shown: ...}");
-    if (isSolid) {
+    const std::string kind = isSolid ? "solid" : "body";
+    if (isThing && isLayer)
+      reader.warning(item.mark, "`" + name + "` is a " + kind + " and a layer: the " + kind + " is meant",
+                     "rename the " + kind + ", or set: {view.layers." + name + ".shown: ...}");
+    if (isThing) {
       event.add(VisibilityAction{name, visible});
     } else if (isLayer) {
       event.add(SetAction{"view.layers." + name + ".shown", visible ? "true" : "false", item.mark.place()});
@@ -131,7 +109,7 @@ void readVisibility(EventReader& event, const YamlNode& node, const std::string&
     } else {
       for (const std::string& layer : layers)
         if (std::find(known.begin(), known.end(), layer) == known.end()) known.push_back(layer);
-      reader.error(item.mark, "no solid and no layer is named `" + name + "`", suggestion(name, known));
+      reader.error(item.mark, "no solid, body or layer is named `" + name + "`", suggestion(name, known));
     }
   });
 }
@@ -161,14 +139,16 @@ struct ActionKind {
   const char* key;
   void (*read)(EventReader& event, const YamlNode& node);
 };
-constexpr ActionKind kActions[] = {{"set", readSet},        {"burst", readBurst}, {"force", readForce},
-                                   {"show", readShow},      {"hide", readHide},   {"stop", readStop},
-                                   {"caption", readCaption}};
-constexpr const char* kNotYet[] = {"impulse", "pull"};
+constexpr ActionKind kActions[] = {{"set", readSet},         {"burst", readBurst},     {"force", readForce},
+                                   {"show", readShow},       {"hide", readHide},       {"stop", readStop},
+                                   {"caption", readCaption}, {"impulse", readImpulse}, {"pull", readPull},
+                                   {"hold", readHold},       {"release", readRelease}, {"add", readAdd},
+                                   {"remove", readRemove},   {"cut", readCut}};
 
-void readEvent(Reader& reader, const YamlNode& node, const std::string& name, SceneSpec& spec) {
+void readEvent(Reader& reader, const YamlNode& node, int item, SceneSpec& spec) {
+  const std::string name = "events." + std::to_string(item);
   MapReader map(reader, node, name);
-  EventReader event{map, spec, {}};
+  EventReader event{map, spec, &node, item, {}};
   readTimes(event);
   int actions = 0;
   std::string all;
@@ -183,10 +163,6 @@ void readEvent(Reader& reader, const YamlNode& node, const std::string& name, Sc
     else
       reader.error(map.keyMark(kind.key), "`" + inside(name, kind.key) + "` has no value");
   }
-  for (const char* key : kNotYet) {
-    map.unsupported(key);
-    actions += map.has(key);
-  }
   const std::size_t before = reader.errors();
   map.finish();
   if (actions == 0 && !map.isWrong() && reader.errors() == before)
@@ -198,8 +174,9 @@ void readEvent(Reader& reader, const YamlNode& node, const std::string& name, Sc
 void readEvents(MapReader& scene, SceneSpec& spec) {
   const YamlNode* node = scene.find("events");
   if (!node || !scene.reader().isList(*node, "events")) return;
-  for (std::size_t k = 0; k < node->items.size(); ++k)
-    readEvent(scene.reader(), *node->items[k], "events." + std::to_string(k), spec);
+  const int count = static_cast<int>(node->items.size());
+  for (int k = 0; k < count; ++k) readAddedBodies(scene.reader(), *node->items[k], k, spec);
+  for (int k = 0; k < count; ++k) readEvent(scene.reader(), *node->items[k], k, spec);
 }
 
 }  // namespace smokebox

@@ -7,12 +7,6 @@
 #include "scene/tree_path.h"
 
 namespace smokebox {
-namespace {
-
-/// Keys of the format that this version cannot simulate yet: refused by name, never passed over in silence.
-constexpr const char* kNotYet[] = {"bodies", "springs", "joints", "particles", "cloth"};
-
-}  // namespace
 
 SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Problem>& problems,
                     bool events) {
@@ -28,6 +22,9 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   readSmoke(scene, spec);
   readTemperature(scene, spec);
   readSolids(scene, spec);
+  readBodies(scene, spec);
+  readCloths(scene, spec);
+  readLinks(scene, spec);
   readProbes(scene, spec);
   readView(scene, spec);  // before the events, which show its layers
   if (events)
@@ -35,13 +32,13 @@ SceneSpec readScene(const YamlPtr& root, const std::string& name, std::vector<Pr
   else
     scene.find("events");  // of a trial: they were read before, and nothing can set them
   readMethod(scene, spec);
-  for (const char* key : kNotYet) scene.unsupported(key);
   scene.finish();
   if (reader.errors() == 0) {
     checkInflow(scene, spec);
     checkFormulas(scene, spec);
     checkTemperature(scene, spec, events);
     if (events) checkPlacement(scene, spec);
+    if (events) checkBodies(scene, spec);
   }
   if (events) checkSetActions(root, name, spec, reader);
   return spec;

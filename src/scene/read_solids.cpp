@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/maths.h"
+#include "scene/names.h"
 #include "scene/nearest.h"
 #include "scene/read_shape.h"
 #include "scene/sections.h"
@@ -88,14 +89,6 @@ Motion readMotion(Reader& reader, const YamlNode& node, const std::string& name,
   }
   map.finish();
   return motion;
-}
-
-/// Names are steps of paths, so that they must be told apart from them.
-void checkName(Reader& reader, const YamlNode& node, const std::string& name) {
-  if (name.empty()) reader.error(node.mark, "an empty name");
-  if (name.find('.') != std::string::npos)
-    reader.error(node.mark, "a name must not contain a dot, got `" + name + "`",
-                 "dots part the steps of a path");
 }
 
 SolidSpec readSolid(Reader& reader, const YamlNode& node, const std::string& name, const SceneSpec& spec,

@@ -8,15 +8,22 @@
 namespace smokebox {
 namespace {
 
-// What may stand beside each layer's name; `kind` is empty for what a scene of this version never has: such a
-// layer is taken, and draws nothing.
-// `shown` may stand beside any.
-enum Option : unsigned { opacity = 1, range = 2, bar = 4, spacing = 8, scale = 16, color = 32 };
-constexpr unsigned kAll = opacity | range | bar | spacing | scale | color;
+// What may stand beside each layer's name; `shown` may stand beside any.
+enum Option : unsigned {
+  opacity = 1,
+  range = 2,
+  bar = 4,
+  spacing = 8,
+  scale = 16,
+  color = 32,
+  mark = 64,
+  length = 128,
+  fade = 256
+};
 
 struct LayerEntry {
   const char* key;
-  std::optional<LayerKind> kind;
+  LayerKind kind;
   unsigned options;
 };
 constexpr LayerEntry kLayers[] = {
@@ -30,13 +37,13 @@ constexpr LayerEntry kLayers[] = {
     {"caption", LayerKind::caption, opacity | color},
     {"time", LayerKind::time, opacity | color},
     {"probes", LayerKind::probes, opacity | color},
-    {"bodies", {}, kAll},
-    {"collisions", {}, kAll},
-    {"springs", {}, kAll},
-    {"particles", {}, kAll},
-    {"cloth", {}, kAll},
-    {"joints", {}, kAll},
-    {"trails", {}, kAll},
+    {"bodies", LayerKind::bodies, opacity | color | mark},
+    {"particles", LayerKind::particles, opacity | color},
+    {"springs", LayerKind::springs, opacity | color},
+    {"joints", LayerKind::joints, opacity | color},
+    {"cloth", LayerKind::cloth, opacity | color},
+    {"trails", LayerKind::trails, opacity | color | length},
+    {"collisions", LayerKind::collisions, opacity | color | fade},
 };
 
 const LayerEntry* layerNamed(Reader& reader, const YamlMark& mark, const std::string& key) {
@@ -69,6 +76,9 @@ void readOptions(Reader& reader, const YamlNode& node, const std::string& name, 
   if (allowed & Option::spacing) map.number("spacing", layer.spacing, kPositive);
   if (allowed & Option::scale) map.number("scale", layer.scale, kPositive);
   if (allowed & Option::color) map.color("color", layer.color);
+  if (allowed & Option::mark) map.boolean("mark", layer.mark);
+  if (allowed & Option::length) map.number("length", layer.length, kPositive);
+  if (allowed & Option::fade) map.number("fade", layer.fade, kPositive);
   map.finish();
 }
 
@@ -92,8 +102,7 @@ void readLayer(Reader& reader, const YamlNode& node, const std::string& name, Vi
   view.layerNames.emplace_back(entry->key);
   LayerSpec layer;
   if (options) readOptions(reader, *options, inside(name, entry->key), entry->options, layer);
-  if (!entry->kind) return;
-  layer.kind = *entry->kind;
+  layer.kind = entry->kind;
   view.layers.push_back(layer);
 }
 
@@ -139,23 +148,23 @@ bool isLayerName(const std::string& name) {
 void readView(MapReader& scene, SceneSpec& spec) {
   Reader& reader = scene.reader();
   ViewSpec& view = spec.view;
-  auto defaultLayers = [&] {
-    for (const char* name : kDefaultLayers) {
+  auto takeDefaults = [&] {
+    for (const char* name : defaultLayers(scene.node())) {
       LayerSpec layer;
-      layer.kind = *layerNamed(reader, scene.mark(), name)->kind;
+      layer.kind = layerNamed(reader, scene.mark(), name)->kind;
       view.layers.push_back(layer);
       view.layerNames.emplace_back(name);
     }
   };
   const YamlNode* node = scene.find("view");
-  if (!node) return defaultLayers();
+  if (!node) return takeDefaults();
   MapReader map(reader, *node, "view");
   if (const YamlNode* layers = map.find("layers")) {
     if (reader.isList(*layers, "view.layers"))
       for (std::size_t k = 0; k < layers->items.size(); ++k)
         readLayer(reader, *layers->items[k], "view.layers." + std::to_string(k), view);
   } else {
-    defaultLayers();
+    takeDefaults();
   }
   if (const YamlNode* captions = map.find("captions")) readCaptions(reader, *captions, view);
   const YamlNode* background = map.find("background");

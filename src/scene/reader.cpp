@@ -252,8 +252,6 @@ const YamlNode* MapReader::required(const std::string& key, const std::string& h
   return node;
 }
 
-void MapReader::unsupported(const std::string& key) { unsupported_.push_back(key); }
-
 bool MapReader::hasMore() const {
   return std::any_of(node_.entries.begin(), node_.entries.end(), [&](const YamlEntry& entry) {
     return std::find(asked_.begin(), asked_.end(), entry.key) == asked_.end();
@@ -264,10 +262,7 @@ void MapReader::finish() {
   for (const YamlEntry& entry : node_.entries) {
     const std::string where = name_.empty() ? "" : " in `" + name_ + "`";
     if (std::find(asked_.begin(), asked_.end(), entry.key) != asked_.end()) continue;
-    if (std::find(unsupported_.begin(), unsupported_.end(), entry.key) != unsupported_.end())
-      reader_.error(entry.mark, "`" + entry.key + "` is not supported by this version");
-    else
-      reader_.error(entry.mark, "unknown key `" + entry.key + "`" + where, suggestion(entry.key, asked_));
+    reader_.error(entry.mark, "unknown key `" + entry.key + "`" + where, suggestion(entry.key, asked_));
   }
 }
 

@@ -64,6 +64,7 @@ class MapReader {
   MapReader(Reader& reader, const YamlNode& node, std::string name);
 
   Reader& reader() { return reader_; }
+  const YamlNode& node() const { return node_; }
   const YamlMark& mark() const { return node_.mark; }
   const std::string& name() const { return name_; }
   bool isMap() const { return isMap_; }
@@ -87,8 +88,6 @@ class MapReader {
 
   /// Reports a key that has to be there.
   const YamlNode* required(const std::string& key, const std::string& hint = {});
-  /// Names a key that this version does not know yet, so that the message says just that.
-  void unsupported(const std::string& key);
   /// Is there a key that nobody has asked for yet?
   bool hasMore() const;
   /// Reports every key that was not asked for.
@@ -99,7 +98,7 @@ class MapReader {
   const YamlNode& node_;
   std::string name_;
   bool isMap_ = false;
-  std::vector<std::string> asked_, unsupported_;
+  std::vector<std::string> asked_;
 };
 
 /// `a.b` in the words of messages: the name of `key` within `outer`.

@@ -21,6 +21,11 @@ void readFluid(MapReader& scene, SceneSpec& spec);
 void readSmoke(MapReader& scene, SceneSpec& spec);
 void readTemperature(MapReader& scene, SceneSpec& spec);
 void readSolids(MapReader& scene, SceneSpec& spec);
+/// bodies and particles
+void readBodies(MapReader& scene, SceneSpec& spec);
+void readCloths(MapReader& scene, SceneSpec& spec);
+/// springs and joints
+void readLinks(MapReader& scene, SceneSpec& spec);
 void readProbes(MapReader& scene, SceneSpec& spec);
 void readEvents(MapReader& scene, SceneSpec& spec);
 void readView(MapReader& scene, SceneSpec& spec);
@@ -37,6 +42,12 @@ void checkFormulas(MapReader& scene, const SceneSpec& spec);
 void checkTemperature(MapReader& scene, const SceneSpec& spec, bool warnings);
 /// Warns of things that lie outside of the domain.
 void checkPlacement(MapReader& scene, const SceneSpec& spec);
+/// Reports bodies outside of the domain; warns of those that start inside of each other, of solids or walls,
+/// and of groups with a single member.
+void checkBodies(MapReader& scene, const SceneSpec& spec);
+
+/// `ignore`: a name or a list of them.
+void readGroups(MapReader& map, std::vector<std::string>& groups);
 
 /// Is it the name of a layer, whether this scene lists it or not?
 bool isLayerName(const std::string& name);

@@ -17,10 +17,9 @@
 #include "geometry/walls.h"
 #include "scene/expression.h"
 #include "scene/motion.h"
+#include "scene/rigid_spec.h"
 
 namespace smokebox {
-
-constexpr double kForever = std::numeric_limits<double>::infinity();
 
 struct WallSpec {
   WallKind kind = WallKind::slip;
@@ -116,7 +115,7 @@ struct ForceAction {
   double duration = 0;
 };  // 0: one step
 struct VisibilityAction {
-  std::string solid;
+  std::string name;  // of a solid, body, particle or cloth
   bool visible = true;
 };  // pictures only
 struct StopAction {
@@ -129,7 +128,9 @@ struct CaptionAction {
 
 struct EventSpec {
   double first = 0, every = 0, until = kForever;  // every = 0: once
-  std::variant<SetAction, BurstAction, ForceAction, VisibilityAction, StopAction, CaptionAction> action;
+  std::variant<SetAction, BurstAction, ForceAction, VisibilityAction, StopAction, CaptionAction,
+               ImpulseAction, PullAction, HoldAction, RemoveAction, AddAction, CutAction>
+      action;
 };
 
 // --- pictures
@@ -144,7 +145,14 @@ enum class LayerKind {
   velocity,
   caption,
   time,
-  probes
+  probes,
+  bodies,
+  particles,
+  springs,
+  joints,
+  cloth,
+  trails,
+  collisions
 };
 
 /// As a scene calls it.
@@ -159,6 +167,9 @@ struct LayerSpec {
   double spacing = 0;                          // velocity arrows: metres between them; 0: chosen
   double scale = 0;            // velocity arrows: seconds of motion that an arrow shows; 0: chosen
   std::optional<Color> color;  // arrows, time stamp, caption
+  bool mark = true;            // bodies: a mark on round ones shows how they turn
+  double length = 1;           // trails: seconds that they go back
+  double fade = 0.25;          // collisions: seconds that they stay
 };
 
 struct CaptionSpec {
@@ -174,7 +185,7 @@ struct CameraSpec {
 
 struct ViewSpec {
   std::vector<LayerSpec> layers;
-  std::vector<std::string> layerNames;  // of all that are listed, those too that draw nothing in this version
+  std::vector<std::string> layerNames;  // of all that are listed
   std::vector<CaptionSpec> captions;
   Color background{0.055f, 0.063f, 0.078f};
   CameraSpec camera;
@@ -203,6 +214,10 @@ struct SceneSpec {
   SmokeSpec smoke;
   TemperatureSpec temperature;
   std::vector<SolidSpec> solids;
+  std::vector<BodySpec> bodies;  // particles too; at the end those that events add
+  std::vector<SpringSpec> springs;
+  std::vector<JointSpec> joints;
+  std::vector<ClothSpec> cloths;
   std::vector<EventSpec> events;
   std::vector<ProbeSpec> probes;
   ViewSpec view;

@@ -18,6 +18,18 @@ std::vector<std::string> pathSteps(const std::string& path) {
   }
 }
 
+std::vector<const char*> defaultLayers(const YamlNode& root) {
+  std::vector<const char*> layers{"smoke", "solids"};
+  bool added = false;  // by an event
+  if (const YamlEntry* events = root.entry("events"))
+    for (const YamlPtr& event : events->value->items) added |= event->entry("add") != nullptr;
+  for (const char* name : {"cloth", "bodies", "particles", "springs", "joints"})
+    if (root.entry(name) || (added && (name == std::string("bodies") || name == std::string("particles"))))
+      layers.push_back(name);
+  layers.push_back("caption");
+  return layers;
+}
+
 namespace {
 
 std::string itemName(const YamlNode& item) {
@@ -32,6 +44,7 @@ std::string layerName(const YamlNode& item) {
 }
 
 struct Walk {
+  const YamlPtr& root;
   const std::vector<std::string>& steps;
   const std::string& path;
   const YamlPtr& value;
@@ -78,11 +91,11 @@ struct Walk {
     return map;
   }
 
-  YamlNode defaultLayers() const {
+  YamlNode layersByDefault() const {
     YamlNode list;
     list.kind = YamlNode::Kind::list;
     list.mark = mark;
-    for (const char* name : kDefaultLayers) {
+    for (const char* name : defaultLayers(*root)) {
       YamlNode item;
       item.kind = YamlNode::Kind::scalar;
       item.mark = mark;
@@ -111,7 +124,7 @@ struct Walk {
     const std::string& step = steps[depth];
     YamlNode copy;
     if (isLayers(depth) && (!old || old->kind == YamlNode::Kind::null)) {
-      copy = defaultLayers();
+      copy = layersByDefault();
     } else if (!old || old->kind == YamlNode::Kind::null) {
       if (std::all_of(step.begin(), step.end(), [](char c) { return c >= '0' && c <= '9'; }))
         fail("`" + path + "`: the scene has no list `" + before(depth) + "`", "give the whole list");
@@ -156,12 +169,36 @@ YamlPtr withValue(const YamlPtr& root, const std::string& path, const YamlPtr& v
                   const SourcePlace& place) {
   const std::vector<std::string> steps = pathSteps(path);
   const YamlMark mark{std::make_shared<const std::string>(place.file), place.line, place.column};
-  const Walk walk{steps, path, value, place, mark};
+  const Walk walk{root, steps, path, value, place, mark};
   constexpr std::size_t kMostSteps = 32;
   if (steps.size() > kMostSteps || std::find(steps.begin(), steps.end(), "") != steps.end())
     walk.fail("`" + path + "` is no path", "steps parted by single dots, such as fluid.vorticity");
   return walk.replaced(root, 0);
 }
+
+namespace {
+
+/// Keys of what stands in a list that no event can set.
+const std::vector<std::string>& fixedKeys(const std::string& list) {
+  static const std::vector<std::string> kPlaced{"name",   "shape", "position", "angle",
+                                                "report", "at",    "region",   "follow"};
+  static const std::vector<std::string> kBodies{"name",   "shape", "position",   "angle", "radius",
+                                                "ignore", "held",  "held_until", "repeat"};
+  static const std::vector<std::string> kSprings{"name", "from", "to"};
+  static const std::vector<std::string> kJoints{"name", "pin",  "weld",   "slide", "rope",  "at",
+                                                "axis", "from", "limits", "to",    "length"};
+  static const std::vector<std::string> kCloth{
+      "name",           "corner",        "size",    "cells",  "mass",   "stiffness",
+      "shear",          "bend",          "damping", "radius", "bounce", "friction",
+      "linear_damping", "gravity_scale", "pinned",  "tear",   "ignore"};
+  return list == "bodies" || list == "particles" ? kBodies
+         : list == "springs"                     ? kSprings
+         : list == "joints"                      ? kJoints
+         : list == "cloth"                       ? kCloth
+                                                 : kPlaced;
+}
+
+}  // namespace
 
 std::string whyFixed(const std::string& path) {
   const std::vector<std::string> steps = pathSteps(path);
@@ -170,10 +207,12 @@ std::string whyFixed(const std::string& path) {
     if (first == fixed) return "`" + first + "` cannot change during a run";
   if (first == "temperature" && (steps.size() < 2 || steps[1] == "start"))
     return "`" + path + "` cannot change during a run";
-  if (first == "solids" || first == "probes") {
+  for (const char* list : {"solids", "probes", "bodies", "particles", "springs", "joints", "cloth"}) {
+    if (first != list) continue;
     if (steps.size() < 3) return "the list of `" + first + "` cannot change during a run";
-    for (const char* fixed : {"name", "shape", "position", "angle", "report", "at", "region", "follow"})
-      if (steps[2] == fixed) return "`" + steps[2] + "` of " + first + " cannot change during a run";
+    const auto& fixed = fixedKeys(first);
+    if (std::find(fixed.begin(), fixed.end(), steps[2]) != fixed.end())
+      return "`" + steps[2] + "` of " + first + " cannot change during a run";
   }
   return {};
 }

@@ -9,8 +9,8 @@
 
 namespace smokebox {
 
-/// The layers of a scene that lists none.
-inline constexpr const char* kDefaultLayers[] = {"smoke", "solids", "caption"};
+/// The layers of a scene that lists none: smoke, solids, what it names of bodies, and captions.
+std::vector<const char*> defaultLayers(const YamlNode& root);
 
 std::vector<std::string> pathSteps(const std::string& path);
 

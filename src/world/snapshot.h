@@ -33,6 +33,66 @@ struct ProbePicture {
   std::vector<Outline> region;  // the outline of the region now
 };
 
+/// A free body. What sticks out of a periodic side is there once more, shifted, with the same index.
+struct BodyPicture {
+  std::string name;
+  int index = 0;                  // in SceneSpec::bodies: stable along the film
+  std::vector<Outline> outlines;  // world coordinates now; holes clockwise
+  Pose pose;                      // of the centre of mass: where it is, and how far it has turned
+  std::optional<Color> color;
+  double radius = 0;  // of a disk; 0: any other shape
+};
+
+struct ParticlePicture {
+  Vec2 position;
+  double radius = 0;
+  int index = 0;  // in SceneSpec::bodies
+  std::optional<Color> color;
+};
+
+/// A spring; also one by which an event pulls.
+struct SpringPicture {
+  Vec2 from, to;
+  double tension = 0;  // N, positive where it pulls
+  double length = 0;   // at rest, m; 0: it only pulls
+  std::optional<Color> color;
+  bool pull = false;  // an event's; `to` is the scripted end
+};
+
+struct JointPicture {
+  JointSpec::Kind kind = JointSpec::Kind::pin;
+  Vec2 a, b;          // the points that it joins, world coordinates
+  Vec2 axis;          // of a slide, in the world now
+  double length = 0;  // of a rope
+  bool motor = false;
+};
+
+struct ClothPicture {
+  std::string name;
+  int index = 0;                // in SceneSpec::cloths
+  int columns = 0, rows = 0;    // of particles
+  std::vector<Vec2> positions;  // row by row from the lower left
+  std::vector<char> whole;      // of the (columns - 1) x (rows - 1) cells; a torn one is 0
+  double radius = 0;            // of a particle
+  std::optional<Color> color;
+};
+
+/// Two things that touch, or did a moment ago.
+struct TouchPicture {
+  Vec2 point, normal;
+  double impulse = 0;   // N s
+  double approach = 0;  // speed at which they met, m/s; 0 where they rest on each other
+  double age = 0;       // s; those that rest are told of as long as they touch, with age 0
+};
+
+/// Where a body's centre of mass or a particle has been.
+struct TrailPicture {
+  int index = 0;             // in SceneSpec::bodies
+  std::vector<Vec2> points;  // the oldest first, evenly spaced in time, up to now; NaN where it was wrapped
+  double seconds = 0;        // from the first to the last
+  std::optional<Color> color;
+};
+
 /// Fields that no layer asks for are empty.
 struct Snapshot {
   double time = 0;
@@ -46,6 +106,13 @@ struct Snapshot {
   Field temperature;  // K, cell centres, extended
   Field velocityX, velocityY;        // m/s, cell centres, extended
   std::vector<SolidPicture> solids;  // only those shown
+  std::vector<BodyPicture> bodies;   // only those shown, and there
+  std::vector<ParticlePicture> particles;
+  std::vector<SpringPicture> springs;
+  std::vector<JointPicture> joints;
+  std::vector<ClothPicture> cloths;
+  std::vector<TouchPicture> touches;
+  std::vector<TrailPicture> trails;
   std::vector<ProbePicture> probes;
   std::vector<std::string> captions;  // all that are up now
   ViewSpec view;                      // as events have left it, without layers that are not shown

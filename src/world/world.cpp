@@ -27,6 +27,8 @@ World::World(const SceneDocument& document, const Options& options)
       needs_(needsOf(spec_)),
       probes_(spec_.probes, kOutlineTolerance * spec_.domain.grid.h) {
   boundary_.grid = spec_.domain.grid;
+  if (!spec_.bodies.empty() || !spec_.cloths.empty())
+    throw Error(ExitStatus::failed, "this version reads and checks bodies, but does not move them");
   if (needs_.fluid) buildFluid();
   stepMs_.reserve(std::min(spec_.time.steps + 1, 1L << 20));
   if (options_.figures) recordFigures();
@@ -142,7 +144,8 @@ void World::fireEvents() {
       fillRim(boundary_, made.share);
       forces_.push_back(std::move(made));
     } else if (const auto* visibility = std::get_if<VisibilityAction>(&action)) {
-      solids_.setShown(solids_.find(visibility->solid), visibility->visible);
+      const int solid = solids_.find(visibility->name);
+      if (solid >= 0) solids_.setShown(solid, visibility->visible);
     } else if (const auto* stop = std::get_if<StopAction>(&action)) {
       solids_.stop(solids_.find(stop->solid));
     } else if (const auto* caption = std::get_if<CaptionAction>(&action)) {

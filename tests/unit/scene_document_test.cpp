@@ -34,10 +34,20 @@ solids:
   - name: piston
     shape: {box: {size: [0.2, 0.2]}}
     motion: {expression: {x: "3.6", y: "0.5 + 0.2*sin(2*pi*t)", angle: "0"}}
+bodies:
+  - {name: ball, shape: {circle: {radius: 0.1}}, position: [2, 1.6], angle: 0, velocity: [0, 0], spin: 0,
+     density: 3, bounce: 0.5, friction: 0.3, drag: 0.2, ignore: [a], held_until: 1}
+  - {name: arm, shape: {box: {size: [0.4, 0.05]}}, position: [2.15, 1.5], ignore: a}
+springs:   [{name: s, from: {body: ball, at: [0, 0.1]}, to: {point: [2, 2]}, length: 0.3, stiffness: 40, damping: 0.5}]
+joints:    [{pin: [ball, arm], at: [2, 1.5]}]
+particles: [{position: [1, 1.5], mass: 0.01, radius: 0.01, velocity: [0, 0]}]
+cloth:     [{name: sheet, corner: [0.5, 1.2], size: [1, 0.6], cells: [24, 14], mass: 0.05, stiffness: 200, pinned: top}]
 events:
   - {at: 2,  set: {fluid.vorticity: 0}}
   - {at: 3,  force: {circle: {center: [1, 1], radius: 0.2}, acceleration: [5, 0], for: 0.2}}
   - {every: 1, from: 1, until: 5, burst: {circle: {center: [0.5, 0.5], radius: 0.1}, smoke: 1, color: "#88ccff"}}
+  - {at: 3,  impulse: {body: ball, value: [0, 2]}}
+  - {at: 4,  pull: {body: ball, at: [0, 0], to: [3, 1.5], stiffness: 20, for: 1}}
 probes:    [{name: p, at: [2, 1]}, {name: cabin, region: {circle: {center: [2, 1], radius: 0.3}}, follow: gate}]
 view:
   layers: [smoke, solids, bodies, {pressure: {opacity: 0.6}}, collisions, springs, caption]
@@ -96,7 +106,7 @@ TEST(SceneDocument, TheExampleOfTheDesignReadsWithoutAProblem) {
   EXPECT_DOUBLE_EQ(piston.position.x, 3.6);
   EXPECT_DOUBLE_EQ(piston.position.y, 0.7);
 
-  ASSERT_EQ(spec.events.size(), 3u);
+  ASSERT_EQ(spec.events.size(), 5u);
   EXPECT_EQ(spec.events[0].first, 2);
   EXPECT_EQ(std::get<SetAction>(spec.events[0].action).path, "fluid.vorticity");
   EXPECT_EQ(std::get<SetAction>(spec.events[0].action).value, "0");
@@ -107,9 +117,10 @@ TEST(SceneDocument, TheExampleOfTheDesignReadsWithoutAProblem) {
   ASSERT_EQ(spec.probes.size(), 2u);
   EXPECT_EQ(spec.probes[0].at, (Vec2{2, 1}));
   EXPECT_EQ(spec.probes[1].follow, "gate");
-  ASSERT_EQ(spec.view.layers.size(), 4u);
-  EXPECT_EQ(spec.view.layers[2].kind, LayerKind::pressure);
-  EXPECT_EQ(spec.view.layers[2].opacity, 0.6);
+  ASSERT_EQ(spec.view.layers.size(), 7u);
+  EXPECT_EQ(spec.view.layers[2].kind, LayerKind::bodies);
+  EXPECT_EQ(spec.view.layers[3].kind, LayerKind::pressure);
+  EXPECT_EQ(spec.view.layers[3].opacity, 0.6);
   EXPECT_EQ(spec.view.captions.at(0).text, "vorticity on");
   EXPECT_EQ(spec.output.width, 1280);
   EXPECT_EQ(spec.output.fps, 30);
@@ -232,17 +243,17 @@ TEST(SceneDocument, AliasesShareWhatTheyName) {
 }
 
 TEST(SceneDocument, LayersTakeTheirOptions) {
-  // Truth: each option in its field; layers of things that this scene cannot have draw nothing.
+  // Truth: each option in its field.
   const SceneSpec spec = specOf(
       "view: {background: light, camera: {center: [1, 0.5], height: 0.5}, layers: [time, joints, trails, "
       "{vorticity: {opacity: 0.5, range: [-2, 2], bar: false}}, {velocity: {spacing: 0.1, scale: 0.2, color: "
       "red}}]}");
-  ASSERT_EQ(spec.view.layers.size(), 3u);
+  ASSERT_EQ(spec.view.layers.size(), 5u);
   EXPECT_EQ(spec.view.layers[0].kind, LayerKind::time);
-  EXPECT_EQ(spec.view.layers[1].range, (std::array<double, 2>{-2, 2}));
-  EXPECT_FALSE(spec.view.layers[1].bar);
-  EXPECT_EQ(spec.view.layers[2].spacing, 0.1);
-  EXPECT_EQ(spec.view.layers[2].color, (Color{1, 0, 0}));
+  EXPECT_EQ(spec.view.layers[3].range, (std::array<double, 2>{-2, 2}));
+  EXPECT_FALSE(spec.view.layers[3].bar);
+  EXPECT_EQ(spec.view.layers[4].spacing, 0.1);
+  EXPECT_EQ(spec.view.layers[4].color, (Color{1, 0, 0}));
   EXPECT_GT(spec.view.background.r, 0.9f);
   EXPECT_EQ(spec.view.camera.height, 0.5);
 }
@@ -257,7 +268,7 @@ TEST(SceneDocument, EventsBecomeSingleActions) {
       "- {at: 4, set: {fluid.vorticity: 1, gravity: [0, 1]}}\n- {every: 2, caption: {text: x, for: 1}}\n"
       "- {at: 5, force: {box: {size: [1, 1]}, position: [1, .5], acceleration: [5, 0]}}\n");
   ASSERT_EQ(spec.events.size(), 8u);
-  EXPECT_EQ(std::get<VisibilityAction>(spec.events[1].action).solid, "b");
+  EXPECT_EQ(std::get<VisibilityAction>(spec.events[1].action).name, "b");
   EXPECT_FALSE(std::get<VisibilityAction>(spec.events[1].action).visible);
   EXPECT_TRUE(std::get<VisibilityAction>(spec.events[2].action).visible);
   EXPECT_EQ(std::get<StopAction>(spec.events[3].action).solid, "b");
@@ -275,15 +286,15 @@ TEST(SceneDocument, EventsShowAndHideLayers) {
       "fluid: {}\nsolids: [{name: speed, shape: {circle: {radius: .1}}, position: [1, .5]}]\n"
       "view: {layers: [smoke, bodies, speed, {pressure: {shown: false}}]}\n"
       "events:\n- {at: 1, show: [pressure, bodies]}\n- {at: 2, hide: smoke}\n- {at: 3, hide: speed}\n");
-  ASSERT_EQ(spec.view.layers.size(), 3u);
+  ASSERT_EQ(spec.view.layers.size(), 4u);
   EXPECT_TRUE(spec.view.layers[0].shown);
-  EXPECT_FALSE(spec.view.layers[2].shown);
+  EXPECT_FALSE(spec.view.layers[3].shown);
   ASSERT_EQ(spec.events.size(), 4u);
   EXPECT_EQ(std::get<SetAction>(spec.events[0].action).path, "view.layers.pressure.shown");
   EXPECT_EQ(std::get<SetAction>(spec.events[0].action).value, "true");
   EXPECT_EQ(std::get<SetAction>(spec.events[1].action).path, "view.layers.bodies.shown");
   EXPECT_EQ(std::get<SetAction>(spec.events[2].action).value, "false");
-  EXPECT_EQ(std::get<VisibilityAction>(spec.events[3].action).solid, "speed");
+  EXPECT_EQ(std::get<VisibilityAction>(spec.events[3].action).name, "speed");
 }
 
 TEST(SceneDocument, ColoursAreReadAsWritten) {

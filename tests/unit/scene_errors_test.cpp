@@ -330,7 +330,7 @@ TEST(SceneErrors, OnlySolidsAndListedLayersCanBeShown) {
                            "view: {layers: [smoke, {pressure: {shown: false}}]}\nfluid: {}\nevents:\n- ";
   EXPECT_EQ(problemsOf(head + "{at: 1, show: [gate, pressure]}\n"), "");
   expectFault(head + "{at: 1, hide: car}\n",
-              {"s.yaml:6:17: ", "no solid and no layer is named `car`", "known: gate, smoke, pressure"});
+              {"s.yaml:6:17: ", "no solid, body or layer is named `car`", "known: gate, smoke, pressure"});
   expectFault(head + "{at: 1, show: presure}\n", {"s.yaml:6:17: ", "did you mean `pressure`?"});
   expectFault(head + "{at: 1, show: [pressure, gat]}\n", {"s.yaml:6:28: ", "did you mean `gate`?"});
   expectFault(head + "{at: 1, show: vorticity}\n",
@@ -356,16 +356,6 @@ TEST(SceneErrors, EmptyItemsOfListsAreNamed) {
   }
 }
 
-TEST(SceneErrors, WhatThisVersionLacksIsNamed) {
-  // Truth: keys of the format without code behind them are never passed over in silence.
-  for (const char* key : {"bodies", "springs", "joints", "particles", "cloth"})
-    expectFault(kDomain + key + ": []\n",
-                {"s.yaml:2:1: `" + std::string(key) + "` is not supported by this version"});
-  expectFault(kDomain + "events:\n- {at: 1, impulse: {body: a, value: [0, 1]}}\n",
-              {"s.yaml:3:11: `impulse` is not supported"});
-  expectFault(kDomain + "events:\n- {at: 1, pull: {}}\n", {"s.yaml:3:11: `pull` is not supported"});
-}
-
 TEST(SceneErrors, ProbesAndCamerasFollowWhatIsThere) {
   // Truth: a name that no solid has, a probe without or with two places.
   const std::string head =
@@ -379,7 +369,7 @@ TEST(SceneErrors, ProbesAndCamerasFollowWhatIsThere) {
 TEST(SceneErrors, AllAreReportedInOneRun) {
   // Truth: four faults, four messages, in the order of the file.
   const std::string problems = problemsOf(
-      "domain: {size: [2, 1], resolution: 64}\nfluid: {density: -1, foo: 2}\nbodies: []\nwalls: {left: "
+      "domain: {size: [2, 1], resolution: 64}\nfluid: {density: -1, foo: 2}\nbodys: []\nwalls: {left: "
       "opn}\n");
   EXPECT_EQ(lines(problems), 4u) << problems;
   std::size_t last = 0;

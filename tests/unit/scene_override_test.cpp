@@ -86,14 +86,14 @@ TEST(SceneOverride, LayersAreReachedByTheirNames) {
   EXPECT_TRUE(layerOf(with("view.layers.time.shown", "false"), LayerKind::pressure).shown);
   EXPECT_EQ(layerOf(with("view.layers.pressure", "{bar: false}"), LayerKind::pressure).opacity, 1);
   const SceneSpec both = with("view.layers.speed.opacity", "1/4");
-  ASSERT_EQ(both.view.layers.size(), 4u);  // no bodies in this version
-  EXPECT_EQ(both.view.layers[2].opacity, 0.25);
+  ASSERT_EQ(both.view.layers.size(), 5u);
   EXPECT_EQ(both.view.layers[3].opacity, 0.25);
-  EXPECT_FALSE(both.view.layers[3].bar);
+  EXPECT_EQ(both.view.layers[4].opacity, 0.25);
+  EXPECT_FALSE(both.view.layers[4].bar);
   const SceneSpec byPosition = with("view.layers.3.speed.opacity", "1/4");
-  EXPECT_EQ(byPosition.view.layers[2].opacity, 0.25);
-  EXPECT_EQ(byPosition.view.layers[3].opacity, 1);
-  EXPECT_EQ(with("view.layers.2", "vorticity").view.layers[1].kind, LayerKind::vorticity);
+  EXPECT_EQ(byPosition.view.layers[3].opacity, 0.25);
+  EXPECT_EQ(byPosition.view.layers[4].opacity, 1);
+  EXPECT_EQ(with("view.layers.2", "vorticity").view.layers[2].kind, LayerKind::vorticity);
 
   EXPECT_EQ(layerOf(withOverride("view.layers.smoke.opacity", "0.5"), LayerKind::smoke).opacity, 0.5);
   EXPECT_EQ(withOverride("view.layers.smoke.opacity", "0.5").view.layers.size(), 3u);
