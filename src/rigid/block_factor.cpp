@@ -1,0 +1,169 @@
+#include "rigid/block_factor.h"
+
+#include <algorithm>
+
+namespace smokebox {
+
+namespace {
+
+/// Inverse of a symmetric positive definite block, by elimination without pivots.
+template <int N>
+std::array<double, N * N> inverseOf(std::array<double, N * N> a) {
+  for (int k = 0; k < N; ++k) {
+    const double pivot = 1 / a[k * N + k];
+    a[k * N + k] = 1;
+    for (int j = 0; j < N; ++j) a[k * N + j] *= pivot;
+    for (int i = 0; i < N; ++i) {
+      if (i == k) continue;
+      const double share = a[i * N + k];
+      a[i * N + k] = 0;
+      for (int j = 0; j < N; ++j) a[i * N + j] -= share * a[k * N + j];
+    }
+  }
+  for (int i = 0; i < N; ++i)
+    for (int j = i + 1; j < N; ++j) a[i * N + j] = a[j * N + i] = 0.5 * (a[i * N + j] + a[j * N + i]);
+  return a;
+}
+
+template <int N>
+std::array<double, N * N> product(const std::array<double, N * N>& a, const std::array<double, N * N>& b) {
+  std::array<double, N * N> c;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) {
+      double sum = 0;
+      for (int k = 0; k < N; ++k) sum += a[i * N + k] * b[k * N + j];
+      c[i * N + j] = sum;
+    }
+  return c;
+}
+
+/// c -= a b^T
+template <int N>
+void subtractProduct(std::array<double, N * N>& c, const std::array<double, N * N>& a,
+                     const std::array<double, N * N>& b) {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) {
+      double sum = 0;
+      for (int k = 0; k < N; ++k) sum += a[i * N + k] * b[j * N + k];
+      c[i * N + j] -= sum;
+    }
+}
+
+}  // namespace
+
+template <int N>
+bool BlockFactor<N>::layOut(int count, const std::vector<std::array<int, 2>>& pairs, long mostProducts) {
+  std::vector<std::vector<int>> neighbours(count);
+  for (const auto& [i, j] : pairs) {
+    neighbours[i].push_back(j);
+    neighbours[j].push_back(i);
+  }
+  for (auto& list : neighbours) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  order_.clear();
+  position_.assign(count, -1);
+  columnStart_.assign(1, 0);
+  rowAt_.clear();
+  target_.clear();
+  std::vector<int> joined;
+  long products = 0;
+  for (int k = 0; k < count; ++k) {
+    int next = -1;
+    for (int i = 0; i < count; ++i)
+      if (position_[i] < 0 && (next < 0 || neighbours[i].size() < neighbours[next].size())) next = i;
+    position_[next] = k;
+    order_.push_back(next);
+    // What it touches becomes joined to one another.
+    const std::vector<int>& row = neighbours[next];
+    products += static_cast<long>(row.size() * (row.size() + 1) / 2);
+    if (products > mostProducts) return false;
+    for (const int i : row) {
+      joined.clear();
+      std::set_union(neighbours[i].begin(), neighbours[i].end(), row.begin(), row.end(),
+                     std::back_inserter(joined));
+      std::erase_if(joined, [&](int j) { return j == i || j == next; });
+      neighbours[i] = joined;
+      rowAt_.push_back(i);
+    }
+    columnStart_.push_back(static_cast<int>(rowAt_.size()));
+  }
+  for (int& row : rowAt_) row = position_[row];
+  for (int k = 0; k < count; ++k)
+    std::sort(rowAt_.begin() + columnStart_[k], rowAt_.begin() + columnStart_[k + 1]);
+  target_.reserve(products);
+  for (int k = 0; k < count; ++k)
+    for (int s = columnStart_[k]; s < columnStart_[k + 1]; ++s)
+      for (int t = columnStart_[k]; t <= s; ++t)
+        target_.push_back(s == t ? -1 - rowAt_[s] : slot(order_[rowAt_[s]], order_[rowAt_[t]]));
+  diagonal_.assign(count, Block{});
+  inverse_.assign(count, Block{});
+  coupling_.assign(rowAt_.size(), Block{});
+  lower_.assign(rowAt_.size(), Block{});
+  return true;
+}
+
+template <int N>
+int BlockFactor<N>::slot(int i, int j) const {
+  const int row = std::max(position_[i], position_[j]), column = std::min(position_[i], position_[j]);
+  const auto begin = rowAt_.begin() + columnStart_[column], end = rowAt_.begin() + columnStart_[column + 1];
+  const auto found = std::lower_bound(begin, end, row);
+  return found != end && *found == row ? static_cast<int>(found - rowAt_.begin()) : -1;
+}
+
+template <int N>
+void BlockFactor<N>::clear() {
+  std::fill(diagonal_.begin(), diagonal_.end(), Block{});
+  std::fill(coupling_.begin(), coupling_.end(), Block{});
+}
+
+template <int N>
+void BlockFactor<N>::factor() {
+  const int* target = target_.data();
+  for (int k = 0; k < count(); ++k) {
+    inverse_[k] = inverseOf<N>(diagonal_[k]);
+    for (int s = columnStart_[k]; s < columnStart_[k + 1]; ++s) {
+      lower_[s] = product<N>(coupling_[s], inverse_[k]);
+      for (int t = columnStart_[k]; t <= s; ++t, ++target)
+        subtractProduct<N>(*target < 0 ? diagonal_[-1 - *target] : coupling_[*target], lower_[s],
+                           coupling_[t]);
+    }
+  }
+}
+
+template <int N>
+void BlockFactor<N>::solve(std::vector<Row>& x) const {
+  for (int k = 0; k < count(); ++k) {
+    const Row& from = x[order_[k]];
+    for (int s = columnStart_[k]; s < columnStart_[k + 1]; ++s) {
+      Row& to = x[order_[rowAt_[s]]];
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j) to[i] -= lower_[s][i * N + j] * from[j];
+    }
+  }
+  for (int k = count() - 1; k >= 0; --k) {
+    Row sum{};
+    const Row& now = x[order_[k]];
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) sum[i] += inverse_[k][i * N + j] * now[j];
+    for (int s = columnStart_[k]; s < columnStart_[k + 1]; ++s) {
+      const Row& from = x[order_[rowAt_[s]]];
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j < N; ++j) sum[j] -= lower_[s][i * N + j] * from[i];
+    }
+    x[order_[k]] = sum;
+  }
+}
+
+template <int N>
+std::size_t BlockFactor<N>::bytes() const {
+  return (order_.size() + position_.size() + columnStart_.size() + rowAt_.size() + target_.size()) *
+             sizeof(int) +
+         (diagonal_.size() + inverse_.size() + coupling_.size() + lower_.size()) * sizeof(Block);
+}
+
+template class BlockFactor<2>;
+template class BlockFactor<3>;
+
+}  // namespace smokebox

@@ -1,0 +1,300 @@
+#include "rigid/joint_island.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rigid/islands.h"
+
+namespace smokebox {
+
+namespace {
+
+constexpr int kMostIterations = 24;
+constexpr int kLastToJoin = 8;  // iterations after which drives only let go
+// Added to the diagonal, as a share of it: joints that say the same thing twice stay solvable.
+constexpr double kSoftening = 1e-10;
+// What a gap may shrink by in a sub-step, as a share of the joint's reach: a joint that does not fit when it
+// is made, or is torn apart by a script, closes within tens of sub-steps.
+constexpr double kClosing = 0.01;
+// Seconds in which most of what is beyond a limit comes back: the speed of the way back stays.
+constexpr double kLimitClosing = 0.1;
+
+double inertiaBetween(const Jacobian& i, const Jacobian& j, const InverseMass& m) {
+  return m.mass * (i.x * j.x + i.y * j.y) + m.inertia * (i.turn * j.turn);
+}
+
+void pushBody(Bodies& bodies, int body, const std::array<Jacobian, 3>& rows, const JointRow& impulse) {
+  if (body < 0) return;
+  Motion& v = bodies.velocity[body];
+  const InverseMass& m = bodies.inverse[body];
+  for (int r = 0; r < 3; ++r) {
+    v.x += m.mass * (rows[r].x * impulse[r]);
+    v.y += m.mass * (rows[r].y * impulse[r]);
+    v.turn += m.inertia * (rows[r].turn * impulse[r]);
+  }
+}
+
+}  // namespace
+
+bool JointIsland::layOut(const std::vector<int>& joints, const std::vector<Joint>& all,
+                         const Bodies& bodies) {
+  links_.clear();
+  places_.clear();
+  couplings_.clear();
+  std::vector<std::array<int, 2>> ends;
+  for (const int joint : joints) ends.push_back({all[joint].def.a.body, all[joint].def.b.body});
+  for (const auto& pair : ends)
+    for (const int body : pair)
+      if (body >= 0) places_.push_back({body, {}, 0});
+  std::sort(places_.begin(), places_.end(), [](const Place& p, const Place& q) { return p.body < q.body; });
+  places_.erase(std::unique(places_.begin(), places_.end(),
+                            [](const Place& p, const Place& q) { return p.body == q.body; }),
+                places_.end());
+  auto placeOfBody = [&](int body) {
+    if (body < 0) return -1;
+    return static_cast<int>(std::lower_bound(places_.begin(), places_.end(), body,
+                                             [](const Place& p, int wanted) { return p.body < wanted; }) -
+                            places_.begin());
+  };
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    Link link;
+    link.joint = joints[k];
+    link.a = ends[k][0], link.b = ends[k][1];
+    link.placeA = placeOfBody(link.a), link.placeB = placeOfBody(link.b);
+    links_.push_back(link);
+  }
+  const std::vector<SharedBody> shared = sharedBodies(ends, bodies);
+  std::vector<std::array<int, 2>> pairs;
+  for (const SharedBody& s : shared) pairs.push_back({s.first, s.second});
+  const int count = static_cast<int>(joints.size());
+  if (!matrix_.layOut(count, pairs, 20000 + 60L * count)) return false;
+  for (const SharedBody& s : shared) {
+    const bool firstLater = matrix_.comesAfter(s.first, s.second);
+    couplings_.push_back({matrix_.slot(s.first, s.second), firstLater ? s.first : s.second,
+                          firstLater ? s.second : s.first, s.body});
+  }
+  unknowns_.assign(count, JointRow{});
+  return true;
+}
+
+void JointIsland::place(const Bodies& bodies, double h) {
+  for (Place& p : places_) {
+    const Motion& v = bodies.velocity[p.body];
+    const Vec2 position = bodies.positionNow(p.body);
+    const double angle = bodies.angleNow(p.body);
+    p.frame.position = position + h * v.linear();
+    p.angle = angle + h * v.turn;
+    p.frame.turn = p.angle == bodies.angleRad[p.body] ? bodies.turn[p.body] : turnBy(p.angle);
+  }
+}
+
+JointPlace JointIsland::placeOf(const Link& link) const {
+  JointPlace place;
+  if (link.placeA >= 0) place.a = places_[link.placeA].frame, place.angleA = places_[link.placeA].angle;
+  if (link.placeB >= 0) place.b = places_[link.placeB].frame, place.angleB = places_[link.placeB].angle;
+  return place;
+}
+
+void JointIsland::apply(const Link& link, const JointRow& impulse, Bodies& bodies) {
+  pushBody(bodies, link.a, link.rows.a, impulse);
+  pushBody(bodies, link.b, link.rows.b, impulse);
+}
+
+void JointIsland::warmStart(std::vector<Joint>& joints, Bodies& bodies, double h) {
+  place(bodies, 0);
+  linear_ = false;
+  for (Link& link : links_) {
+    Joint& joint = joints[link.joint];
+    const JointDef& def = joint.def;
+    const JointPlace now = placeOf(link);
+    link.rows = jacobiansOf(def, now);
+    link.gap = gapsOf(def, joint.startAngle, now);
+    const double arms = length(def.a.at) + length(def.b.at);
+    link.reach = std::max({arms, def.kind == JointKind::rope ? def.length : 0.0,
+                           def.kind == JointKind::slide ? std::fabs(link.gap[2]) : 0.0, 1e-3});
+    const double away = std::fabs(now.a.position.x) + std::fabs(now.a.position.y) +
+                        std::fabs(now.b.position.x) + std::fabs(now.b.position.y);
+    const int kept = equalities(def.kind);
+    for (int r = 0; r < 3; ++r) {
+      const bool angle = isAngle(def.kind, r);
+      link.tolerance[r] = angle ? 1e-13 + 1e-15 * (std::fabs(now.angleA) + std::fabs(now.angleB))
+                                : 1e-13 * link.reach + 1e-15 * away;
+      const double most = kClosing * (angle ? 1.0 : link.reach);
+      link.goal[r] = link.gap[r] - std::clamp(link.gap[r], -most, most);
+      if (r < kept) joint.on[r] = true;
+    }
+    if (hasDrive(def)) {
+      auto rate = [&](double room, double inside) {
+        return room * inside >= 0 ? room / h : room / std::max(kLimitClosing, h);
+      };
+      Drive& drive = link.drive;
+      const double lower = def.kind == JointKind::rope ? -std::numeric_limits<double>::infinity() : def.lower;
+      const double upper = def.kind == JointKind::rope ? def.length : def.upper;
+      drive.low = rate(lower - link.gap[2], -1);
+      drive.high = rate(upper - link.gap[2], 1);
+      drive.push = def.kind == JointKind::rope ? 0 : def.motorLimit * h;
+      drive.speed = std::clamp(def.motorSpeed, drive.low, std::max(drive.low, drive.high));
+    } else if (kept < 3) {
+      joint.on[2] = false;
+    }
+    if (!settled_) joint.impulse = {};
+    apply(link, joint.impulse, bodies);
+  }
+  settled_ = true;
+  factor(joints, bodies);
+}
+
+void JointIsland::factor(const std::vector<Joint>& joints, const Bodies& bodies) {
+  const InverseMass fixed;
+  matrix_.clear();
+  for (int k = 0; k < matrix_.count(); ++k) {
+    Link& link = links_[k];
+    const std::array<bool, 3>& on = joints[link.joint].on;
+    const InverseMass& a = link.a < 0 ? fixed : bodies.inverse[link.a];
+    const InverseMass& b = link.b < 0 ? fixed : bodies.inverse[link.b];
+    BlockFactor<3>::Block& block = matrix_.diagonal(k);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j)
+        if (i == j || (on[i] && on[j]))
+          block[3 * i + j] = inertiaBetween(link.rows.a[i], link.rows.a[j], a) +
+                             inertiaBetween(link.rows.b[i], link.rows.b[j], b);
+      double& own = block[4 * i];
+      link.ownInertia[i] = own;
+      // A row that moves nothing (the angle between two particles) is left out.
+      own = on[i] && own > 0 ? own * (1 + kSoftening) : 1;
+    }
+  }
+  for (const Coupling& c : couplings_) {
+    const Link &row = links_[c.row], &column = links_[c.column];
+    const std::array<bool, 3>&rowOn = joints[row.joint].on, &columnOn = joints[column.joint].on;
+    const InverseMass& m = bodies.inverse[c.body];
+    // A joint of a body with itself would have it on both sides; its ends are two bodies.
+    const auto& rows = row.a == c.body ? row.rows.a : row.rows.b;
+    const auto& columns = column.a == c.body ? column.rows.a : column.rows.b;
+    BlockFactor<3>::Block& block = matrix_.coupling(c.slot);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (rowOn[i] && columnOn[j]) block[3 * i + j] += inertiaBetween(rows[i], columns[j], m);
+  }
+  matrix_.factor();
+}
+
+JointRow JointIsland::ratesOf(const Link& link, const Joint& joint, const Bodies& bodies, double h) const {
+  JointRow rates;
+  if (linear_) {
+    const Motion none;
+    const Motion& a = link.a < 0 ? none : bodies.velocity[link.a];
+    const Motion& b = link.b < 0 ? none : bodies.velocity[link.b];
+    for (int r = 0; r < 3; ++r) rates[r] = link.rows.a[r].rate(a) + link.rows.b[r].rate(b);
+  } else {
+    const JointRow end = gapsOf(joint.def, joint.startAngle, placeOf(link));
+    for (int r = 0; r < 3; ++r) rates[r] = (end[r] - link.gap[r]) / h;
+  }
+  const int kept = equalities(joint.def.kind);
+  for (int r = 0; r < kept; ++r) rates[r] += (link.gap[r] - (linear_ ? 0 : link.goal[r])) / h;
+  return rates;
+}
+
+bool JointIsland::chooseStair(Link& link, Joint& joint, double rate, bool mayJoin, double& impulse) const {
+  const Drive& drive = link.drive;
+  const double own = link.ownInertia[2], now = joint.impulse[2];
+  if (!(own > 0)) {
+    joint.on[2] = false;
+    impulse = now;
+    return false;
+  }
+  // The impulses that would bring the rate to each of the steps.
+  const double toLow = now + (drive.low - rate) / own, toSpeed = now + (drive.speed - rate) / own,
+               toHigh = now + (drive.high - rate) / own;
+  const bool was = joint.on[2];
+  bool on = true;
+  if (toLow >= drive.push && toLow > 0) {
+    link.driveGoal = drive.low;
+  } else if (toHigh <= -drive.push && toHigh < 0) {
+    link.driveGoal = drive.high;
+  } else if (drive.push > 0 && std::fabs(toSpeed) <= drive.push) {
+    link.driveGoal = drive.speed;
+  } else {
+    on = false;
+  }
+  if (on && !was && !mayJoin) on = false;
+  joint.on[2] = on;
+  impulse = on ? now : toSpeed > 0 ? drive.push : -drive.push;
+  return on != was;
+}
+
+double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) {
+  double found = 0, before = std::numeric_limits<double>::infinity();
+  for (int iteration = 0;; ++iteration) {
+    place(bodies, h);
+    bool changed = false, pushed = false;
+    double worst = 0;  // in units of what is tolerated
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      Link& link = links_[k];
+      Joint& joint = joints[link.joint];
+      JointRow rates = ratesOf(link, joint, bodies, h);
+      if (hasDrive(joint.def)) {
+        double impulse = 0;
+        changed |= chooseStair(link, joint, rates[2], iteration <= kLastToJoin, impulse);
+        if (impulse != joint.impulse[2]) {
+          const JointRow more{0, 0, impulse - joint.impulse[2]};
+          const double rate = std::fabs(more[2]) * link.ownInertia[2];
+          if (iteration == 0) found = std::max(found, isAngle(joint.def.kind, 2) ? rate * link.reach : rate);
+          joint.impulse[2] = impulse;
+          apply(link, more, bodies);
+          pushed |= rate * h > link.tolerance[2];
+        }
+        rates[2] -= link.driveGoal;
+      }
+      for (int r = 0; r < 3; ++r) {
+        unknowns_[k][r] = joint.on[r] && link.ownInertia[r] > 0 ? -rates[r] : 0;
+        const double size = std::fabs(unknowns_[k][r]);
+        worst = std::max(worst, size * h / link.tolerance[r]);
+        if (iteration == 0) found = std::max(found, isAngle(joint.def.kind, r) ? size * link.reach : size);
+      }
+    }
+    if (!changed && !pushed) {
+      if (worst <= 1) return found;
+      // It no longer gets better: by rounding, because there is no solution on the curve, or none at all.
+      if (iteration >= 3 && !(worst < 0.7 * before)) {
+        if (worst < 1e3) return found;
+        if (linear_) {
+          settled_ = worst < 1e6;
+          return found;
+        }
+        linear_ = true;
+        before = std::numeric_limits<double>::infinity();
+        continue;
+      }
+    }
+    if (iteration >= kMostIterations) {
+      settled_ = false;
+      return found;
+    }
+    before = changed || pushed ? std::numeric_limits<double>::infinity() : worst;
+    if (pushed) {
+      place(bodies, h);
+      for (std::size_t k = 0; k < links_.size(); ++k) {
+        const Link& link = links_[k];
+        const Joint& joint = joints[link.joint];
+        JointRow rates = ratesOf(link, joint, bodies, h);
+        rates[2] -= hasDrive(joint.def) ? link.driveGoal : 0;
+        for (int r = 0; r < 3; ++r) unknowns_[k][r] = joint.on[r] && link.ownInertia[r] > 0 ? -rates[r] : 0;
+      }
+    }
+    if (changed) factor(joints, bodies);
+    matrix_.solve(unknowns_);
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      Joint& joint = joints[links_[k].joint];
+      for (int r = 0; r < 3; ++r) joint.impulse[r] += unknowns_[k][r];
+      apply(links_[k], unknowns_[k], bodies);
+    }
+  }
+}
+
+std::size_t JointIsland::bytes() const {
+  return links_.size() * sizeof(Link) + places_.size() * sizeof(Place) +
+         couplings_.size() * sizeof(Coupling) + matrix_.bytes() + unknowns_.size() * sizeof(JointRow);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,82 @@
+// Joints that hang together, solved at once.
+//
+// The constraints hold at the places that bodies have at the sub-step's end, while impulses act along the
+// directions of its start (SHAKE: Ryckaert, Ciccotti, Berendsen 1977): with leapfrog that is symplectic, so
+// the energy of a pendulum does not drift. The matrix of all rows, A = J M^-1 J^T, is factored once a
+// sub-step; Newton's iterations with it find the impulses. Limits, ropes and motors ("drives") have a
+// staircase of impulse over rate; which stair each is on is part of the iteration (a primal-dual active set:
+// Hintermueller, Ito, Kunisch 2002).
+//
+// Limits: where a body turns by more than about a radian in a sub-step there may be no such impulse; then the
+// island takes its constraints as linear, for that sub-step. Joints that contradict one another pull with
+// forces that are not carried on from one sub-step to the next.
+#pragma once
+#include "rigid/block_factor.h"
+#include "rigid/joint_rows.h"
+
+namespace smokebox {
+
+struct Joint {
+  JointDef def;
+  bool there = true;
+  double startAngle = 0;     // of b less that of a
+  JointRow impulse{};        // of the sub-step, N s and N m s
+  std::array<bool, 3> on{};  // rows in the direct solve
+};
+
+class JointIsland {
+ public:
+  /// False if it is too dense for a direct solve.
+  bool layOut(const std::vector<int>& joints, const std::vector<Joint>& all, const Bodies& bodies);
+
+  void warmStart(std::vector<Joint>& joints, Bodies& bodies, double h);
+  /// Until it holds. Returns the largest rate, m/s, that it found and took away.
+  double solve(std::vector<Joint>& joints, Bodies& bodies, double h);
+
+  std::size_t bytes() const;
+
+ private:
+  /// A drive's impulse over its rate falls: any from `push` up at `low`, `push` between `low` and `speed`,
+  /// any down to -push at `speed`, -push up to `high`, any from -push down there.
+  struct Drive {
+    double low = 0, high = 0, speed = 0;
+    double push = 0;  // N s
+  };
+  struct Link {
+    int joint = 0;
+    int a = -1, b = -1;            // bodies; -1: the world
+    int placeA = -1, placeB = -1;  // in places_
+    JointJacobians rows;
+    JointRow gap{};         // at the sub-step's start
+    JointRow goal{};        // at its end, of equalities
+    JointRow ownInertia{};  // rate of each row from its own impulse
+    Drive drive;
+    double driveGoal = 0;  // rate
+    double reach = 0;      // m
+    JointRow tolerance{};  // of gaps
+  };
+  struct Coupling {
+    int slot = 0, row = 0, column = 0, body = 0;
+  };
+  struct Place {
+    int body = 0;
+    Frame frame;
+    double angle = 0;
+  };
+
+  void place(const Bodies& bodies, double h);
+  JointPlace placeOf(const Link& link) const;
+  JointRow ratesOf(const Link& link, const Joint& joint, const Bodies& bodies, double h) const;
+  bool chooseStair(Link& link, Joint& joint, double rate, bool mayJoin, double& impulse) const;
+  void factor(const std::vector<Joint>& joints, const Bodies& bodies);
+  static void apply(const Link& link, const JointRow& impulse, Bodies& bodies);
+
+  std::vector<Link> links_;
+  std::vector<Place> places_;
+  std::vector<Coupling> couplings_;
+  BlockFactor<3> matrix_;
+  std::vector<JointRow> unknowns_;
+  bool linear_ = false, settled_ = true;
+};
+
+}  // namespace smokebox

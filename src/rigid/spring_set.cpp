@@ -1,0 +1,152 @@
+#include "rigid/spring_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+#include "rigid/islands.h"
+
+namespace smokebox {
+
+int SpringSet::add(const SpringDef& def, const Bodies&) {
+  Spring spring;
+  spring.def = def;
+  springs_.push_back(spring);
+  ++there_;
+  stale_ = true;
+  return count() - 1;
+}
+
+void SpringSet::remove(int spring) {
+  Spring& s = springs_[spring];
+  if (!s.there) return;
+  s.there = false;
+  s.impulse = 0;
+  --there_;
+  stale_ = true;
+}
+
+void SpringSet::removeAt(int body) {
+  for (int k = 0; k < count(); ++k)
+    if (springs_[k].def.from.body == body || springs_[k].def.to.body == body) remove(k);
+}
+
+void SpringSet::moveEnd(int spring, Vec2 to) {
+  Spring& s = springs_[spring];
+  const Anchor& end = s.def.to.body < 0 ? s.def.to : s.def.from;
+  s.carried = true;
+  s.carriedFrom = end.at;
+  s.carriedTo = to;
+  carrying_ = true;
+}
+
+void SpringSet::beginStep(Bodies& bodies, double dt, int subSteps) {
+  if (empty()) return;
+  clock_ = {dt, 0};
+  for (int k = 0; k < static_cast<int>(moved_.size()); ++k)
+    stale_ |= moved_[k] != 2 && moved_[k] != static_cast<char>(bodies.moves(k));
+  if (stale_) layOut(bodies);
+  if (!sheet_.empty()) sheet_.beginStep(springs_, bodies, dt / subSteps);
+}
+
+void SpringSet::layOut(const Bodies& bodies) {
+  stale_ = tearing_ = false;
+  islands_.clear();
+  moved_.assign(bodies.count(), 2);
+  std::vector<int> numbers, many;
+  std::vector<std::array<int, 2>> ends;
+  for (int k = 0; k < count(); ++k) {
+    const SpringDef& def = springs_[k].def;
+    if (!springs_[k].there) continue;
+    tearing_ |= def.tear < std::numeric_limits<double>::infinity();
+    for (const int body : {def.from.body, def.to.body})
+      if (body >= 0) moved_[body] = static_cast<char>(bodies.moves(body));
+    if (def.from.body == def.to.body) continue;
+    numbers.push_back(k);
+    ends.push_back({def.from.body, def.to.body});
+  }
+  auto solveAtOnce = [&](const std::vector<int>& group) {
+    SpringIsland island;
+    if (!island.layOut(group, springs_, bodies)) return false;
+    islands_.push_back(std::move(island));
+    return true;
+  };
+  for (std::vector<int>& group : islandsOf(ends, bodies)) {
+    for (int& link : group) link = numbers[link];
+    if (solveAtOnce(group)) continue;
+    for (const int k : group)
+      if (SpringSheet::takes(springs_[k], bodies))
+        many.push_back(k);
+      else
+        solveAtOnce({k});
+  }
+  sheet_.layOut(many, springs_, bodies);
+}
+
+void SpringSet::warmStart(Bodies& bodies, double h) {
+  const double before = h_ > 0 ? h_ : h;
+  h_ = h;
+  for (SpringIsland& island : islands_) island.warmStart(springs_, bodies, clock_, h, before);
+  sheet_.warmStart(bodies, h, before);
+  clock_.elapsed += h;
+}
+
+double SpringSet::solve(Bodies& bodies, double) {
+  double change = 0;
+  for (SpringIsland& island : islands_) change = std::max(change, island.solve(springs_, bodies));
+  return std::max(change, sheet_.solve(bodies));
+}
+
+void SpringSet::endStep(Bodies& bodies) {
+  sheet_.endStep(bodies, h_);
+  if (carrying_) {
+    for (Spring& spring : springs_) {
+      if (!spring.carried) continue;
+      (spring.def.to.body < 0 ? spring.def.to : spring.def.from).at = spring.carriedTo;
+      spring.carried = false;
+    }
+    carrying_ = false;
+  }
+  if (tearing_) {
+    for (int k = 0; k < count(); ++k) {
+      const Spring& spring = springs_[k];
+      if (spring.there && distance(k, bodies) > (1 + spring.def.tear) * spring.def.length) remove(k);
+    }
+  }
+}
+
+double SpringSet::tension(int spring) const {
+  if (!(h_ > 0) || !springs_[spring].there) return 0;
+  return sheet_.has(spring) ? sheet_.tension(spring) : -springs_[spring].impulse / h_;
+}
+
+double SpringSet::distance(int spring, const Bodies& bodies) const {
+  const Spring& s = springs_[spring];
+  return length(springEnd(s.def.to, s, bodies, clock_).at - springEnd(s.def.from, s, bodies, clock_).at);
+}
+
+double SpringSet::energy(const Bodies& bodies) const {
+  double sum = 0;
+  for (int k = 0; k < count(); ++k) {
+    if (!springs_[k].there) continue;
+    const double stretch = distance(k, bodies) - springs_[k].def.length;
+    sum += 0.5 * springs_[k].def.stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
+void SpringSet::hashInto(Fnv1a& hash) const {
+  for (int k = 0; k < count(); ++k) {
+    hash.update(&springs_[k].there, sizeof springs_[k].there);
+    const double last = tension(k);
+    hash.update(&last, sizeof last);
+  }
+}
+
+std::size_t SpringSet::bytes() const {
+  std::size_t sum = springs_.size() * sizeof(Spring) + moved_.size() + sheet_.bytes();
+  for (const SpringIsland& island : islands_) sum += island.bytes();
+  return sum;
+}
+
+}  // namespace smokebox

@@ -1,0 +1,55 @@
+// All springs. Few that hang together, and chains, are solved at once (spring_island.h); cloth by
+// conjugate gradients (spring_sheet.h). Both have the exact equilibrium as the only state at rest, however
+// few the sweeps.
+#pragma once
+#include "rigid/spring_sheet.h"
+
+namespace smokebox {
+
+class Fnv1a;
+
+class SpringSet {
+ public:
+  int add(const SpringDef& def, const Bodies& bodies);
+  void remove(int spring);
+  void removeAt(int body);
+  int count() const { return static_cast<int>(springs_.size()); }
+  bool isThere(int spring) const { return springs_[spring].there; }
+  const SpringDef& def(int spring) const { return springs_[spring].def; }
+  /// Length, stiffness, damping and tear may be changed between steps; not the ends.
+  SpringDef& def(int spring) { return springs_[spring].def; }
+  /// Where its end in the world is at the end of the next step.
+  void moveEnd(int spring, Vec2 to);
+  bool empty() const { return there_ == 0; }
+
+  void beginStep(Bodies& bodies, double dt, int subSteps);
+  void warmStart(Bodies& bodies, double h);
+  /// One sweep over all; the largest change of a relative velocity, m/s.
+  double solve(Bodies& bodies, double h);
+  void endStep(Bodies& bodies);
+
+  /// N, of the last sub-step; positive: it pulls.
+  double tension(int spring) const;
+  /// Elastic, J.
+  double energy(const Bodies& bodies) const;
+
+  void hashInto(Fnv1a& hash) const;
+  std::size_t bytes() const;
+
+ private:
+  void layOut(const Bodies& bodies);
+  double distance(int spring, const Bodies& bodies) const;
+
+  std::vector<Spring> springs_;
+  std::vector<SpringIsland> islands_;
+  SpringSheet sheet_;
+  std::vector<char> moved_;  // by body: 1 if it could move when springs were laid out; 2: no spring is there
+  StepClock clock_;
+  double h_ = 0;  // of the last sub-step, s
+  int there_ = 0;
+  bool stale_ = false;     // the islands must be laid out anew
+  bool carrying_ = false;  // an end in the world is on its way
+  bool tearing_ = false;   // a spring can tear
+};
+
+}  // namespace smokebox
