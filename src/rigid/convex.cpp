@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/shape.h"
+
 namespace smokebox {
 
 ConvexPiece makePiece(std::vector<Vec2> points, double radius) {
@@ -17,17 +19,24 @@ void finishPiece(ConvexPiece& piece) {
   const std::size_t n = piece.points.size(), edges = n > 1 ? n : 0;
   piece.normals.resize(edges);
   piece.inner.resize(edges, 0);
-  Vec2 lo = piece.points[0], hi = lo;
-  for (std::size_t k = 0; k < edges; ++k) {
-    const Vec2 p = piece.points[k], along = piece.points[k + 1 < n ? k + 1 : 0] - p;
+  Vec2 mean;
+  for (std::size_t k = 0; k < n; ++k) {
+    mean = mean + (1.0 / static_cast<double>(n)) * piece.points[k];
+    if (edges == 0) break;
+    const Vec2 along = piece.points[k + 1 < n ? k + 1 : 0] - piece.points[k];
     const double size = length(along);
     piece.normals[k] = size > 0 ? Vec2{along.y / size, -along.x / size} : Vec2{};
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
   }
-  piece.centre = 0.5 * (lo + hi);
+  const MassProperties mass = n > 2 ? massProperties({piece.points}) : MassProperties{};
+  piece.centre = mass.area > 0 ? mass.centre : mean;
   piece.reach = 0;
-  for (Vec2 p : piece.points) piece.reach = std::max(piece.reach, length(p - piece.centre));
+  piece.within = edges > 0 ? 1e300 : 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    piece.reach = std::max(piece.reach, length(piece.points[k] - piece.centre));
+    if (edges > 0)
+      piece.within = std::min(piece.within, dot(piece.normals[k], piece.points[k] - piece.centre));
+  }
+  piece.within = std::max(piece.within, 0.0);
   piece.reach += piece.radius;
   const auto inside = std::count_if(piece.inner.begin(), piece.inner.end(), [](auto is) { return is != 0; });
   piece.whole = inside == 0;

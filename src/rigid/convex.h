@@ -39,12 +39,12 @@ inline Frame relativeFrame(const Frame& outer, const Frame& inner) {
 /// counterclockwise convex polygon, rounded by `radius`.
 struct ConvexPiece {
   std::vector<Vec2> points;
-  std::vector<Vec2> normals;  // [k]: outward, of the edge from points[k] to points[k + 1]; none for a disk
-  std::vector<std::uint8_t>
-      inner;  // edge k lies inside the body (made by the decomposition): no contacts on it
+  std::vector<Vec2> normals;  // [k]: outward, of the edge from points[k] to points[k + 1]; a disk has none
+  std::vector<std::uint8_t> inner;  // [k]: that edge lies inside the body, between two pieces: no contacts
   double radius = 0;
   Vec2 centre;
-  double reach = 0;  // largest distance of the (rounded) piece from `centre`
+  double reach = 0;   // largest distance of the (rounded) piece from `centre`
+  double within = 0;  // the disk of this radius about `centre` lies within the core
 
   bool whole = true;    // no edge is inner
   bool buried = false;  // every edge is inner

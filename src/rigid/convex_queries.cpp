@@ -4,33 +4,58 @@
 
 namespace smokebox::convex {
 
-Axis largestSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP, double limit) {
+namespace {
+
+/// Every edge against every corner.
+Axis directSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP, double limit) {
   const int np = static_cast<int>(p.normals.size()), nq = static_cast<int>(q.points.size());
   const Vec2* corners = q.points.data();
   Axis best;
-  // Many corners: while the edge goes round, so does the support.
-  const bool calipers = nq > 12;
-  int at = 0;
   for (int k = 0; k < np; ++k) {
     const Vec2 normal = p.normals[k], inward = -inverseRotate(qInP.turn, normal);
-    double most;
-    if (calipers) {
-      at = k == 0 ? support(q, inward) : supportFrom(q, inward, at);
-      most = dot(inward, corners[at]);
-    } else {
-      at = 0;
-      most = dot(inward, corners[0]);
-      for (int j = 1; j < nq; ++j) {
-        const double along = dot(inward, corners[j]);
-        at = along > most ? j : at;
-        most = along > most ? along : most;
-      }
+    int at = 0;
+    double most = dot(inward, corners[0]);
+    for (int j = 1; j < nq; ++j) {
+      const double along = dot(inward, corners[j]);
+      at = along > most ? j : at;
+      most = along > most ? along : most;
     }
     const double separation = dot(normal, qInP.position - p.points[k]) - most;
     if (separation > best.separation) {
       best = {separation, k, at};
       if (separation > limit) return best;
     }
+  }
+  return best;
+}
+
+}  // namespace
+
+Axis largestSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP, double limit) {
+  if (p.points.size() * q.points.size() <= 40) return directSeparation(p, q, qInP, limit);
+  const int np = static_cast<int>(p.normals.size());
+  // The edge that faces the other's centre most is tried first. Any other cannot be better than its line is
+  // from the disk within the other piece, and mostly that tells that it is worse.
+  const Vec2 centre = toWorld(qInP, q.centre);
+  int facing = 0;
+  double farthest = -1e300;
+  for (int k = 0; k < np; ++k) {
+    const double away = dot(p.normals[k], centre - p.points[k]);
+    facing = away > farthest ? k : facing;
+    farthest = away > farthest ? away : farthest;
+  }
+  Axis best;
+  int at = 0;
+  const bool many = q.points.size() > 12;
+  for (int step = 0, k = facing; step < np; ++step, k = k + 1 < np ? k + 1 : 0) {
+    const Vec2 normal = p.normals[k];
+    if (dot(normal, centre - p.points[k]) - q.within <= best.separation) continue;
+    const Vec2 inward = -inverseRotate(qInP.turn, normal);
+    at = many ? supportFrom(q, inward, step == 0 ? coarseSupport(q, inward) : at) : support(q, inward);
+    const double separation = dot(normal, qInP.position - p.points[k]) - dot(inward, q.points[at]);
+    if (separation <= best.separation) continue;
+    best = {separation, k, at};
+    if (separation > limit) return best;
   }
   return best;
 }

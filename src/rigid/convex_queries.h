@@ -27,7 +27,16 @@ inline int support(const ConvexPiece& piece, Vec2 direction) {
   return best;
 }
 
-/// The same, found by walking uphill from corner `from`.
+/// The best of every 16th corner: a place for supportFrom() to start from.
+inline int coarseSupport(const ConvexPiece& piece, Vec2 direction) {
+  const int n = static_cast<int>(piece.points.size());
+  int best = 0;
+  for (int k = 16; k < n; k += 16)
+    if (dot(direction, piece.points[k]) > dot(direction, piece.points[best])) best = k;
+  return best;
+}
+
+/// The farthest corner, found by walking uphill from corner `from`.
 inline int supportFrom(const ConvexPiece& piece, Vec2 direction, int from) {
   const int n = static_cast<int>(piece.points.size());
   if (n < 3) return support(piece, direction);
