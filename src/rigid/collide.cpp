@@ -83,23 +83,39 @@ bool touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::
   return true;
 }
 
-/// The edge of the other piece that meets edge `k` of the reference: an outline edge that runs against it, or
-/// any at a corner that can be touched from there; -1: edge `k` meets only the inside of the other's body.
-int incidentEdge(const Side& side, int k, int supported) {
+/// Corner `corner` of the other piece alone against edge `k` of the reference.
+bool cornerOnFace(const Side& side, int k, int corner, double margin, Manifold& manifold) {
+  const ConvexPiece& p = side.reference;
+  const Vec2 normal = p.normals[k], at = toWorld(side.otherInReference, side.other.points[corner]);
+  const Vec2 from = p.points[k], to = p.points[next(p, k)];
+  const double apart = dot(normal, at - from);
+  if (dot(at - from, to - from) < 0 || dot(at - to, to - from) > 0) return false;
+  if (apart > margin + p.radius + side.other.radius) return false;
+  manifold.count = 0;
+  addPoint(side, at, apart, normal, featureOf(side, k, corner, false), manifold);
+  setNormal(side, normal, manifold);
+  return true;
+}
+
+/// Contact of edge `k`, on the outline, with what the other piece has on its own outline at its supported
+/// corner: an edge that runs against it, or the corner if it can be touched from there.
+bool faceOnOutline(const Side& side, int k, int supported, double margin, Manifold& manifold) {
   const ConvexPiece& q = side.other;
   const Vec2 facing = -inverseRotate(side.otherInReference.turn, side.reference.normals[k]);
-  if (q.whole) return edgeFacing(q, supported, facing);
+  if (q.whole) return clipToFace(side, k, edgeFacing(q, supported, facing), margin, manifold);
   constexpr double kAgainst = 0.9;
+  const bool touchable = inCone(q, supported, facing);
   const int edges[2] = {supported, previous(q, supported)};
   int best = -1;
-  double most = inCone(q, supported, facing) ? 0 : kAgainst;
+  double most = touchable ? 0 : kAgainst;
   for (int edge : edges) {
     const double towards = dot(q.normals[edge], facing);
     if (q.inner[edge] || !(towards > most)) continue;
     most = towards;
     best = edge;
   }
-  return best;
+  if (best >= 0) return clipToFace(side, k, best, margin, manifold);
+  return touchable && cornerOnFace(side, k, supported, margin, manifold);
 }
 
 /// The best edge on the outlines, for bodies of several pieces: it must be crossed by the other piece where
@@ -119,9 +135,8 @@ void chooseOutline(const Side& side, const Frame& referenceInOther, double margi
     at = supportFrom(q, -inverseRotate(side.otherInReference.turn, normal), at);
     const double separation = dot(normal, toWorld(side.otherInReference, q.points[at]) - p.points[k]);
     if (separation <= choice.separation) continue;
-    const int incident = incidentEdge(side, k, at);
     Manifold manifold;
-    if (incident < 0 || !clipToFace(side, k, incident, margin, manifold)) continue;
+    if (!faceOnOutline(side, k, at, margin, manifold)) continue;
     const bool crossed = separation > 0 || meets(q, toWorld(referenceInOther, p.points[k]),
                                                  toWorld(referenceInOther, p.points[next(p, k)]));
     if (crossed) {
@@ -140,19 +155,25 @@ bool containsPoint(const ConvexPiece& piece, Vec2 own) {
   return true;
 }
 
-bool collideOutlines(const Side& ab, const Side& ba, double margin, Manifold& manifold) {
+/// `separation`: the largest of all edges, those inside the bodies too.
+bool collideOutlines(const Side& ab, const Side& ba, double separation, double margin, Manifold& manifold) {
   OutlineChoice choice;
   chooseOutline(ab, ba.otherInReference, margin, choice);
   chooseOutline(ba, ab.otherInReference, margin, choice);
-  if (choice.manifold.count > 0) {
+  // An overlap that is far deeper than that of the two pieces goes through a neighbouring piece, which has it
+  // too.
+  constexpr double kFar = 10;
+  if (choice.manifold.count > 0 && choice.separation >= std::min(0.0, kFar * separation)) {
     manifold = choice.manifold;
     return true;
   }
   // Swallowed: out by the nearest side.
   const bool swallowed = containsPoint(ab.reference, toWorld(ab.otherInReference, ab.other.centre)) ||
                          containsPoint(ba.reference, toWorld(ba.otherInReference, ba.other.centre));
-  if (!swallowed || choice.fallback.count == 0) return false;
-  manifold = choice.fallback;
+  if (!swallowed) return false;
+  const bool crossed = choice.manifold.count > 0;
+  if (!crossed && choice.fallback.count == 0) return false;
+  manifold = crossed ? choice.manifold : choice.fallback;
   return true;
 }
 
@@ -287,7 +308,7 @@ bool collide(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const 
         return touchCorner(best, onP, onQ, nearest, featureOf(best, axis.edge, cornerQ, false), manifold);
     }
   }
-  if (!whole) return collideOutlines(ab, ba, margin, manifold);
+  if (!whole) return collideOutlines(ab, ba, axis.separation, margin, manifold);
 
   // A's face unless B's is clearly better: contacts keep their features while two faces lie on each other.
   const double bias = 1e-3 * std::min(a.reach, b.reach);
@@ -296,9 +317,8 @@ bool collide(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const 
   const bool useA = exactlyA || (aligned && onA.separation >= onB.separation - bias);
   const Side& side = useA ? ab : ba;
   const Axis& chosen = useA ? onA : onB;
-  if (clipToFace(side, chosen.edge, incidentEdge(side, chosen.edge, chosen.support), margin, manifold))
-    return true;
-  return clipToFace(best, axis.edge, incidentEdge(best, axis.edge, axis.support), margin, manifold);
+  if (faceOnOutline(side, chosen.edge, chosen.support, margin, manifold)) return true;
+  return faceOnOutline(best, axis.edge, axis.support, margin, manifold);
 }
 
 }  // namespace smokebox

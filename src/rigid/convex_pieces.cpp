@@ -2,46 +2,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/merge.h"
+#include "rigid/clean_outlines.h"
 #include "rigid/pieces.h"
 #include "rigid/triangulate.h"
 
 namespace smokebox {
 namespace {
 
-/// Without corners that do not turn (their sine below 1e-9), doubled ones and spikes.
-Outline cleaned(Outline outline) {
-  for (bool changed = true; changed && outline.size() >= 3;) {
-    changed = false;
-    Outline kept;
-    const std::size_t n = outline.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      const Vec2 before = kept.empty() ? outline[n - 1] : kept.back(), p = outline[k];
-      const Vec2 in = p - before, out = outline[k + 1 < n ? k + 1 : 0] - p;
-      if (std::fabs(cross(in, out)) <= 1e-9 * length(in) * length(out))
-        changed = true;
-      else
-        kept.push_back(p);
-    }
-    outline = std::move(kept);
-  }
-  return outline;
-}
-
 /// Corners of all outlines one after the other.
 struct Region {
   std::vector<Vec2> points;
+  std::vector<Vec2> drawnIn;   // the same a little farther inside: outlines that touch in a corner come apart
   std::vector<int> ends;       // one past the last corner of each outline
   std::vector<int> following;  // [corner]: the next on its outline
   std::vector<Vec2> normals;   // [corner]: of the outline's edge from there
   std::vector<std::array<Vec2, 2>> cones;
+  double extent = 0;
 };
 
 Region regionOf(const std::vector<Outline>& outlines) {
   Region region;
-  for (const Outline& given : outlines) {
-    const Outline outline = cleaned(given);
+  region.extent = extentOf(outlines);
+  Outline drawnIn;
+  for (const Outline& outline : cleanOutlines(outlines)) {
     const int first = static_cast<int>(region.points.size()), n = static_cast<int>(outline.size());
-    if (n < 3) continue;
+    growOutline(outline, -1e-8 * region.extent, drawnIn);
+    region.drawnIn.insert(region.drawnIn.end(), drawnIn.begin(), drawnIn.end());
     for (int k = 0; k < n; ++k) {
       const Vec2 along = outline[(k + 1) % n] - outline[k];
       const double size = length(along);
@@ -95,9 +82,12 @@ void removeDiagonals(const Region& region, std::vector<HalfEdge>& edges) {
     if (edges[k].twin > static_cast<int>(k))
       diagonals.emplace_back(-length(region.points[edges[k].to] - region.points[edges[k].from]), k);
   std::sort(diagonals.begin(), diagonals.end());
+  // Edges between outlines that touch have a direction only where these are drawn in.
   auto convex = [&](const HalfEdge& in, const HalfEdge& out) {
-    const Vec2 corner = region.points[in.to];
-    return cross(corner - region.points[in.from], region.points[out.to] - corner) >= 0;
+    const Vec2 corner = region.points[in.to], drawn = region.drawnIn[in.to];
+    const Vec2 drawnIn = drawn - region.drawnIn[in.from], drawnOut = region.drawnIn[out.to] - drawn;
+    return cross(corner - region.points[in.from], region.points[out.to] - corner) >= 0 &&
+           cross(drawnIn, drawnOut) >= -1e-5 * length(drawnIn) * length(drawnOut);
   };
   for (const auto& [size, k] : diagonals) {
     HalfEdge &a = edges[k], &b = edges[a.twin];
@@ -120,7 +110,7 @@ std::vector<ConvexPiece> convexPieces(const std::vector<Outline>& outlines) {
     pieces.push_back(makePiece(region.points, 0));
     return pieces;
   }
-  std::vector<HalfEdge> edges = halfEdges(triangulate(region.points, region.ends));
+  std::vector<HalfEdge> edges = halfEdges(triangulate(region.drawnIn, region.ends));
   removeDiagonals(region, edges);
   for (std::size_t k = 0; k < edges.size(); ++k) {
     if (edges[k].removed || edges[k].seen) continue;
@@ -128,10 +118,12 @@ std::vector<ConvexPiece> convexPieces(const std::vector<Outline>& outlines) {
     for (int at = static_cast<int>(k); !edges[at].seen; at = edges[at].next) {
       const int corner = edges[at].from;
       edges[at].seen = true;
+      if (length(region.points[edges[at].to] - region.points[corner]) < 1e-8 * region.extent) continue;
       piece.points.push_back(region.points[corner]);
       piece.inner.push_back(region.following[corner] == edges[at].to ? 0 : 1);
       piece.cones.push_back(region.cones[corner]);
     }
+    if (piece.points.size() < 3) continue;
     finishPiece(piece);
     if (piece.whole) piece.cones.clear();
     pieces.push_back(std::move(piece));

@@ -62,7 +62,7 @@ Axis largestSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& 
 
 bool inCone(const ConvexPiece& piece, int k, Vec2 direction) {
   if (piece.cones.empty()) return true;
-  constexpr double kSlack = 1e-3;  // radians
+  constexpr double kSlack = 1e-6;  // radians
   const auto& [start, end] = piece.cones[k];
   return dot(start + end, direction) > 0 && cross(start, direction) >= -kSlack &&
          cross(direction, end) >= -kSlack;
@@ -70,14 +70,19 @@ bool inCone(const ConvexPiece& piece, int k, Vec2 direction) {
 
 bool meets(const ConvexPiece& piece, Vec2 from, Vec2 to) {
   double enter = 0, leave = 1;
-  for (std::size_t k = 0; k < piece.normals.size(); ++k) {
-    const double a = dot(piece.normals[k], from - piece.points[k]) - piece.radius;
-    const double b = dot(piece.normals[k], to - piece.points[k]) - piece.radius;
+  // What is left of the segment behind the line through `corner`.
+  const auto cut = [&](Vec2 normal, Vec2 corner) {
+    const double a = dot(normal, from - corner) - piece.radius, b = dot(normal, to - corner) - piece.radius;
     if (a > 0 && b > 0) return false;
     if (a > 0) enter = std::max(enter, a / (a - b));
     if (b > 0) leave = std::min(leave, a / (a - b));
-  }
-  return enter <= leave;
+    return enter <= leave;
+  };
+  for (std::size_t k = 0; k < piece.normals.size(); ++k)
+    if (!cut(piece.normals[k], piece.points[k])) return false;
+  if (piece.points.size() != 2) return true;
+  const Vec2 along = perpendicular(piece.normals[0]);  // a capsule has ends too
+  return cut(along, piece.points[1]) && cut(-along, piece.points[0]);
 }
 
 }  // namespace smokebox::convex

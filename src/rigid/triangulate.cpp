@@ -29,6 +29,14 @@ int rightmost(const std::vector<Vec2>& points, const std::vector<int>& loop) {
   return best;
 }
 
+/// Does the way from corner `k` of the loop to `p` begin inside?
+bool beginsInside(const std::vector<Vec2>& points, const std::vector<int>& loop, int k, Vec2 p) {
+  const int n = static_cast<int>(loop.size());
+  const Vec2 at = points[loop[k]], before = points[loop[(k + n - 1) % n]], after = points[loop[(k + 1) % n]];
+  const bool leftOfIn = area(before, at, p) > 0, leftOfOut = area(at, after, p) > 0;
+  return area(before, at, after) > 0 ? leftOfIn && leftOfOut : leftOfIn || leftOfOut;
+}
+
 /// A corner of `loop` that is seen from `from`, a corner of a hole, looking to the right.
 int visibleCorner(const std::vector<Vec2>& points, const std::vector<int>& loop, Vec2 from) {
   const int n = static_cast<int>(loop.size());
@@ -62,6 +70,9 @@ int visibleCorner(const std::vector<Vec2>& points, const std::vector<int>& loop,
       result = k;
     }
   }
+  // A corner where bridges end is there more than once: the one on whose side the hole lies.
+  for (int k = 0; k < n; ++k)
+    if (loop[k] == loop[result] && beginsInside(points, loop, k, from)) return k;
   return result;
 }
 

@@ -1,0 +1,257 @@
+// Bodies of several pieces: what lies inside pushes nothing, and nothing on the outline is lost.
+#include <gtest/gtest.h>
+
+#include "rigid/collide.h"
+#include "rigid/collide_bodies.h"
+#include "rigid/distance.h"
+#include "rigid/pieces.h"
+#include "rigid_cases.h"
+
+namespace smokebox {
+namespace {
+
+using namespace rigid_cases;
+
+struct Contacts {
+  std::vector<Manifold> manifolds;
+  double smallestGap = 1e300, smallestUp = 1;
+};
+
+Contacts contactsOf(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb, double margin) {
+  Contacts contacts;
+  std::vector<PiecePair> pairs;
+  findPiecePairs(a, fa, b, fb, margin, pairs);
+  for (PiecePair pair : pairs) {
+    Manifold manifold;
+    if (!collide(a.pieces[pair.a], fa, b.pieces[pair.b], fb, margin, manifold)) continue;
+    contacts.manifolds.push_back(manifold);
+    contacts.smallestUp = std::min(contacts.smallestUp, manifold.normal.y);
+    for (int k = 0; k < manifold.count; ++k)
+      contacts.smallestGap = std::min(contacts.smallestGap, manifold.points[k].gap);
+  }
+  return contacts;
+}
+
+BodyShape shapeOf(const Shape& shape) {
+  Vec2 offset;
+  return makeBodyShape({shape, {}}, 1e-3, offset);
+}
+
+/// Of the bodies: over all pairs of pieces.
+Closest closestOf(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb) {
+  Closest best;
+  best.distance = 1e300;
+  for (const ConvexPiece& p : a.pieces)
+    for (const ConvexPiece& q : b.pieces) {
+      const Closest closest = closestPoints(p, fa, q, fb);
+      if (closest.distance < best.distance) best = closest;
+    }
+  return best;
+}
+
+TEST(RigidSeams, ABoxSlidesOverTheSeamOfTwoPieces) {
+  // Flat ground of two pieces with a seam at x = 0: whatever the overlap and wherever the box is, normals
+  // point straight up, and the box is carried over its whole width.
+  BodyShape ground;
+  const Vec2 up{0, 1}, right{1, 0}, down{0, -1}, left{-1, 0};
+  ConvexPiece first = makePiece({{-5, -1}, {0, -1}, {0, 0}, {-5, 0}}, 0);
+  first.inner = {0, 1, 0, 0};
+  first.cones = {{{left, down}}, {{down, down}}, {{up, up}}, {{up, left}}};
+  ConvexPiece second = makePiece({{0, -1}, {5, -1}, {5, 0}, {0, 0}}, 0);
+  second.inner = {0, 0, 0, 1};
+  second.cones = {{{down, down}}, {{down, right}}, {{right, up}}, {{up, up}}};
+  for (ConvexPiece* piece : {&first, &second}) {
+    finishPiece(*piece);
+    ground.pieces.push_back(*piece);
+  }
+  ground.tree = PieceTree(ground.pieces);
+  for (const Shape& shape :
+       {Shape{BoxShape{{0.4, 0.2}}}, Shape{CapsuleShape{0.2, 0.1}}, Shape{CircleShape{0.1}}}) {
+    const BodyShape slider = shapeOf(shape);
+    const bool round = std::holds_alternative<CircleShape>(shape);
+    for (double overlap : {0.02, 2e-3, 5e-4, 1e-6, 0.0, -1e-3})
+      for (int k = -4000; k <= 4000; ++k) {
+        const double x = k * 1e-4;
+        const Contacts contacts = contactsOf(ground, {{0, 0}, {}}, slider, {{x, 0.1 - overlap}, {}}, 5e-3);
+        ASSERT_NEAR(contacts.smallestUp, 1, 1e-12) << x << " " << overlap;
+        ASSERT_NEAR(contacts.smallestGap, -overlap, 1e-12) << x << " " << overlap;
+        double lo = 1e300, hi = -1e300;
+        for (const Manifold& m : contacts.manifolds)
+          for (int i = 0; i < m.count; ++i) {
+            lo = std::min(lo, m.points[i].point.x - x);
+            hi = std::max(hi, m.points[i].point.x - x);
+          }
+        const double half = round ? 0 : std::holds_alternative<BoxShape>(shape) ? 0.2 : 0.1;
+        // Within ten overlaps of the seam the second piece may be left out.
+        ASSERT_NEAR(lo, -half, 0.1 * std::fabs(overlap) + 1e-9) << x << " " << overlap;
+        ASSERT_NEAR(hi, half, 0.1 * std::fabs(overlap) + 1e-9) << x << " " << overlap;
+      }
+  }
+}
+
+TEST(RigidSeams, HillyGroundPushesUpOnly) {
+  // A ground of slopes below 0.05 in many pieces: a box, a capsule, a triangle and a disk with small overlaps
+  // are pushed along normals within that of vertical.
+  Outline hills{{10, -1}, {10, 0}};
+  Dice dice(8);
+  for (double x = 9.9; x > -10; x -= dice.between(0.05, 0.4))
+    hills.push_back({x, hills.back().y + dice.between(-0.01, 0.01) * 0.25});
+  hills.insert(hills.end(), {{-10, 0}, {-10, -1}});
+  Vec2 offset;
+  const BodyShape ground = makeSolidShape({PolygonShape{hills}, {}}, 1e-3);
+  EXPECT_GT(ground.pieces.size(), 20u);
+  for (const Shape& shape :
+       {Shape{BoxShape{{0.4, 0.2}}}, Shape{CapsuleShape{0.2, 0.1}}, Shape{CircleShape{0.1}},
+        Shape{PolygonShape{{{-0.3, -0.1}, {0.3, -0.1}, {0, 0.2}}}}}) {
+    const BodyShape slider = shapeOf(shape);
+    for (int k = 0; k < 3000; ++k) {
+      Frame frame{{-9 + 18.0 * k / 3000, 1}, turnBy(dice.between(-0.02, 0.02))};
+      for (int round = 0; round < 60; ++round)
+        frame.position.y -= closestOf(ground, {}, slider, frame).distance * 0.99;
+      for (double overlap : {1e-4, 1e-3}) {
+        Frame pressed = frame;
+        pressed.position.y -= overlap;
+        const Contacts contacts = contactsOf(ground, {}, slider, pressed, 1e-3);
+        ASSERT_FALSE(contacts.manifolds.empty());
+        ASSERT_GT(contacts.smallestUp, 0.99) << pressed.position.x << " " << overlap;
+        ASSERT_LT(contacts.smallestGap, -0.9 * overlap);
+        ASSERT_GT(contacts.smallestGap, -2 * overlap);
+      }
+    }
+  }
+}
+
+Outline randomStar(Dice& dice, int corners, double nearest) {
+  Outline outline;
+  for (int k = 0; k < corners; ++k) {
+    const double turn = 2 * kPi * (k + dice.between(0, 0.9)) / corners, r = dice.between(nearest, 1);
+    outline.push_back({r * exact::cos(turn), r * exact::sin(turn)});
+  }
+  return outline;
+}
+
+Shape randomProbe(Dice& dice) {
+  switch (dice.below(4)) {
+    case 0:
+      return CircleShape{0.1};
+    case 1:
+      return BoxShape{{0.2, 0.1}};
+    case 2:
+      return CapsuleShape{0.2, 0.05};
+    default:
+      break;
+  }
+  Outline star = randomStar(dice, 8, 0.4);
+  for (Vec2& p : star) p = 0.3 * p;
+  return PolygonShape{star};
+}
+
+TEST(RigidSeams, StarsTouchOnTheirOutlinesOnly) {
+  // Random stars and probes brought together along a line, a little apart or overlapping: the smallest gap is
+  // that of the bodies, no contact is lost, none is deeper than a few times the overlap.
+  Dice dice(11);
+  int apart = 0, overlapping = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    const BodyShape star = shapeOf(PolygonShape{randomStar(dice, 5 + dice.below(20), 0.4)});
+    const BodyShape probe = shapeOf(randomProbe(dice));
+    const Frame fixed = dice.frame(1);
+    const Vec2 away = turnBy(dice.between(0, 7)).c * Vec2{1, 0} + Vec2{0, dice.between(-1, 1)};
+    if (length(away) < 0.1) continue;
+    const Vec2 out = (1 / length(away)) * away;
+    Frame frame{fixed.position + 2.0 * out, turnBy(dice.between(0, 7))};
+    Closest closest;
+    for (int round = 0; round < 300; ++round) {
+      closest = closestOf(star, fixed, probe, frame);
+      if (closest.distance < 1e-7) break;
+      frame.position = frame.position - closest.distance * out;
+    }
+    if (std::fabs(closest.distance) > 1e-6) continue;
+    for (double gap : {5e-4, 1e-6, -1e-4, -1e-3}) {
+      Frame placed = frame;
+      placed.position = placed.position + gap * closest.normal;
+      const Contacts contacts = contactsOf(star, fixed, probe, placed, 1e-3);
+      ASSERT_FALSE(contacts.manifolds.empty()) << trial << " " << gap;
+      if (gap > 0) {
+        ++apart;
+        ASSERT_NEAR(contacts.smallestGap, closestOf(star, fixed, probe, placed).distance, 1e-6) << trial;
+      } else {
+        ++overlapping;
+        ASSERT_GT(contacts.smallestGap, -5e-3) << trial << " " << gap;
+        ASSERT_LT(contacts.smallestGap, 0) << trial << " " << gap;
+      }
+    }
+  }
+  EXPECT_GT(apart, 4000);
+  EXPECT_GT(overlapping, 4000);
+}
+
+/// Teeth of four corners each.
+Outline gear(int teeth, double inner, double outer) {
+  Outline outline;
+  for (int k = 0; k < 4 * teeth; ++k) {
+    const double r = (k + 1) % 4 < 2 ? inner : outer, turn = 2 * kPi * k / (4 * teeth);
+    outline.push_back({r * exact::cos(turn), r * exact::sin(turn)});
+  }
+  return outline;
+}
+
+TEST(RigidSeams, GearsOfAThousandCornersMesh) {
+  // Two gears of 250 teeth brought together as deep as they go, at many angles: the smallest gap is the true
+  // distance, and with a slight overlap no contact is deeper than that.
+  const double tooth = 2 * kPi / 250;
+  const BodyShape body = shapeOf(PolygonShape{gear(250, 1 - 0.5 * tooth, 1)});
+  EXPECT_LE(body.pieces.size(), 251u);
+  std::vector<PiecePair> pairs;
+  for (int k = 0; k < 40; ++k) {
+    const Frame fixed{{0, 0}, turnBy(0.37)};
+    Frame frame{{2 + 2 * tooth, 0}, turnBy(k * tooth / 40)};
+    const auto distance = [&] {  // pieces of the far sides left out
+      findPiecePairs(body, fixed, body, frame, 3 * tooth, pairs);
+      double nearest = 1e300;
+      for (PiecePair pair : pairs)
+        nearest =
+            std::min(nearest, closestPoints(body.pieces[pair.a], fixed, body.pieces[pair.b], frame).distance);
+      return nearest;
+    };
+    for (int round = 0; round < 200; ++round) {
+      const double gap = distance();
+      if (gap < 1e-9) break;
+      frame.position.x -= gap;
+    }
+    EXPECT_LT(frame.position.x, 2 + 0.05 * tooth);
+    frame.position.x += 1e-5;
+    EXPECT_NEAR(contactsOf(body, fixed, body, frame, 1e-3 * tooth).smallestGap, distance(), 1e-9) << k;
+    frame.position.x -= 2e-5;
+    const double overlap = contactsOf(body, fixed, body, frame, 1e-3 * tooth).smallestGap;
+    EXPECT_LT(overlap, 0) << k;
+    EXPECT_GE(overlap, -1.1e-5) << k;
+  }
+}
+
+TEST(RigidSeams, APegInAHoleTouchesItsRim) {
+  // A disk inside the hole of a ring meets the rim, at the gap between them, and the ring's inside is free.
+  Outline hole = outlinesOf({RegularShape{6, 0.5}, {}}, 1)[0];
+  const Outline rim = outlinesOf({RegularShape{6, 1}, {}}, 1)[0];
+  // A ring is a union of six bars.
+  UnionShape bars;
+  for (int k = 0; k < 6; ++k)
+    bars.parts.push_back({PolygonShape{{rim[k], rim[(k + 1) % 6], hole[(k + 1) % 6], hole[k]}}, {}});
+  const BodyShape ring = shapeOf(bars), peg = shapeOf(CircleShape{0.2});
+  ASSERT_EQ(ring.outlines.size(), 2u);
+  EXPECT_NEAR(ring.mass.area, 1.5 * std::sqrt(3) * 0.75, 1e-6);
+  EXPECT_TRUE(contactsOf(ring, {}, peg, {{0, 0}, {}}, 0.1).manifolds.empty());
+  const double flat = 0.5 * std::sqrt(3) / 2;
+  for (double gap : {0.05, 1e-4, -1e-3}) {
+    const Contacts contacts = contactsOf(ring, {}, peg, {{0, flat - 0.2 - gap}, {}}, 0.1);
+    ASSERT_FALSE(contacts.manifolds.empty());
+    EXPECT_NEAR(contacts.smallestGap, gap, 1e-6);
+    for (const Manifold& m : contacts.manifolds) {
+      if (m.points[0].gap < gap + 1e-3) {
+        EXPECT_NEAR(m.normal.y, -1, 1e-6);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace smokebox
