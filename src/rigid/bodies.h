@@ -19,6 +19,20 @@ struct InverseMass {
   double mass = 0, inertia = 0;  // 1/kg, 1/(kg m^2); both 0 for what nothing moves
 };
 
+/// `turn` and a further, mostly small angle: by Taylor's series below a quarter (to rounding), else anew.
+inline Turn turnedBy(Turn turn, double angleRad) {
+  Turn by;
+  if (angleRad < 0.25 && angleRad > -0.25) {
+    const double q = angleRad * angleRad;
+    by.s = angleRad *
+           (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156))))));
+    by.c = 1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90 * (1 - q / 132 * (1 - q / 182))))));
+  } else {
+    by = turnBy(angleRad);
+  }
+  return {by.c * turn.c - by.s * turn.s, by.s * turn.c + by.c * turn.s};
+}
+
 struct Bodies {
   std::vector<BodyDef> def;
   std::vector<Motion> velocity;  // now
@@ -34,7 +48,7 @@ struct Bodies {
   Vec2 positionNow(int body) const { return position[body] + moved[body].linear(); }
   double angleNow(int body) const { return angleRad[body] + moved[body].turn; }
   Frame frameNow(int body) const {
-    return {positionNow(body), moved[body].turn == 0 ? turn[body] : turnBy(angleNow(body))};
+    return {positionNow(body), moved[body].turn == 0 ? turn[body] : turnedBy(turn[body], moved[body].turn)};
   }
   /// Of a point of the body at `arm` from its centre of mass.
   Vec2 velocityAt(int body, Vec2 arm) const {

@@ -1,0 +1,151 @@
+#include "rigid/broad_phase.h"
+
+#include <cmath>
+
+namespace smokebox {
+
+namespace {
+constexpr double kRoom = 0.1;  // of a fat box around what it has to hold, in reaches of the body
+
+bool mayMeet(const Bodies& bodies, int a, int b) {
+  if (!bodies.moves(a) && !bodies.moves(b)) return false;
+  return (bodies.def[a].ignore & bodies.def[b].ignore) == 0;
+}
+}  // namespace
+
+Box boxOf(const BodyShape& shape, const Frame& frame) {
+  if (shape.pieces.size() == 1 && shape.pieces[0].points.size() == 1) {
+    const Vec2 centre = toWorld(frame, shape.pieces[0].points[0]);
+    return grown({centre, centre}, shape.pieces[0].radius);
+  }
+  if (shape.tree.nodes().empty()) return {frame.position, frame.position};
+  const PieceTree::Node& own = shape.tree.nodes()[0];
+  const Vec2 middle = toWorld(frame, own.centre), half = own.half;
+  const double c = std::abs(frame.turn.c), s = std::abs(frame.turn.s);
+  const Vec2 reach{c * half.x + s * half.y, s * half.x + c * half.y};
+  return {middle - reach, middle + reach};
+}
+
+bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt) {
+  const BodyShape& shape = *bodies.def[body].shape;
+  const Motion& v = bodies.velocity[body];
+  const double turns = std::abs(v.turn) * dt;
+  Box box = boxOf(shape, bodies.frameNow(body));
+  if (turns > 0) {
+    // What a turn can add: the farthest point's way, or the whole circle about the centre of mass.
+    const Vec2 p = bodies.positionNow(body);
+    const Box circle = grown({p, p}, shape.reach);
+    const Box swung = grown(box, turns * shape.reach);
+    box = {{std::max(swung.low.x, std::min(circle.low.x, box.low.x)),
+            std::max(swung.low.y, std::min(circle.low.y, box.low.y))},
+           {std::min(swung.high.x, std::max(circle.high.x, box.high.x)),
+            std::min(swung.high.y, std::max(circle.high.y, box.high.y))}};
+  }
+  const Vec2 way = dt * v.linear();
+  box = joined(box, shifted(box, way));
+  if (bodies.moves(body))
+    box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
+  if (listed_[body] && fat_[body].holds(box)) return false;
+  fat_[body] = grown(box, kRoom * (bodies.moves(body) ? shape.reach : 0));
+  listed_[body] = 1;
+  return true;
+}
+
+void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& found) const {
+  const bool wrapX = walls_.sides[0] == RigidWalls::Kind::periodic,
+             wrapY = walls_.sides[2] == RigidWalls::Kind::periodic;
+  for (int sy = wrapY ? -1 : 0; sy <= (wrapY ? 1 : 0); ++sy)
+    for (int sx = wrapX ? -1 : 0; sx <= (wrapX ? 1 : 0); ++sx) {
+      // The other one's image at +shift meets this body where the other one meets this body's image at -shift.
+      const Box box = shifted(fat_[body], {-sx * walls_.width, -sy * walls_.height});
+      tree_.query(fat_, box, [&](int other) {
+        if (other == body || !mayMeet(bodies, body, other)) return;
+        if (body < other)
+          found.push_back({body, other, static_cast<std::int8_t>(sx), static_cast<std::int8_t>(sy)});
+        else
+          found.push_back({other, body, static_cast<std::int8_t>(-sx), static_cast<std::int8_t>(-sy)});
+      });
+    }
+}
+
+void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
+  const int count = bodies.count();
+  fat_.resize(count);
+  listed_.resize(count, 0);
+  refitted_.assign(count, 0);
+  bool listChanged = false;
+  long moved = 0;
+  for (int b = 0; b < count; ++b) {
+    if (!bodies.there[b]) {
+      listChanged |= listed_[b] != 0;
+      refitted_[b] = listed_[b];
+      listed_[b] = 0;
+      continue;
+    }
+    const bool was = listed_[b];
+    if (!fit(bodies, b, gravity, dt)) continue;
+    refitted_[b] = 1;
+    ++moved;
+    listChanged |= !was;
+  }
+  sinceBuild_ += moved;
+  if (listChanged || 4 * sinceBuild_ > count) {
+    items_.clear();
+    for (int b = 0; b < count; ++b)
+      if (listed_[b]) items_.push_back(b);
+    tree_.build(fat_, items_);
+    sinceBuild_ = 0;
+  } else if (moved > 0) {
+    tree_.refit(fat_);
+  } else if (late_.empty()) {
+    return;
+  }
+
+  found_.assign(late_.begin(), late_.end());
+  late_.clear();
+  for (int b = 0; b < count; ++b)
+    if (refitted_[b] && listed_[b]) search(bodies, b, found_);
+  std::sort(found_.begin(), found_.end());
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+
+  // Pairs that are left or new, in order.
+  merged_.clear();
+  auto fresh = found_.begin();
+  for (const BodyPair& pair : pairs_) {
+    const PairKey& key = pair.key;
+    for (; fresh != found_.end() && *fresh < key; ++fresh) merged_.push_back({*fresh});
+    if (fresh != found_.end() && *fresh == key) ++fresh;
+    if (refitted_[key.a] || refitted_[key.b]) {
+      if (!listed_[key.a] || !listed_[key.b]) continue;
+      if (!fat_[key.a].meets(shifted(fat_[key.b], shiftOf(key)))) continue;
+    }
+    merged_.push_back(pair);
+  }
+  for (; fresh != found_.end(); ++fresh) merged_.push_back({*fresh});
+  pairs_.swap(merged_);
+}
+
+void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, Vec2 gravity, double dt,
+                        std::vector<PairKey>& found) {
+  found_.clear();
+  bool any = false;
+  for (const int b : which) any |= (refitted_[b] = fit(bodies, b, gravity, dt));
+  if (any) {
+    tree_.refit(fat_);
+    for (const int b : which)
+      if (refitted_[b]) search(bodies, b, found_);
+    sinceBuild_ += static_cast<long>(which.size());
+  }
+  std::sort(found_.begin(), found_.end());
+  found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  for (const PairKey& key : found_) {
+    const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), key,
+                                     [](const BodyPair& pair, const PairKey& k) { return pair.key < k; });
+    if (at != pairs_.end() && at->key == key) continue;
+    if (std::find(late_.begin(), late_.end(), key) != late_.end()) continue;
+    found.push_back(key);
+    late_.push_back(key);
+  }
+}
+
+}  // namespace smokebox

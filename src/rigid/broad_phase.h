@@ -1,0 +1,59 @@
+// Which bodies can meet: pairs of bodies whose fat boxes overlap. A body's fat box holds its way through the
+// coming step and some room, so that one which rests or drifts needs no new search: near-linear in the number
+// of bodies. Beyond periodic sides a body meets the images of others.
+#pragma once
+#include <compare>
+#include <vector>
+
+#include "rigid/bodies.h"
+#include "rigid/box_tree.h"
+
+namespace smokebox {
+
+/// b's image that a meets lies `sx` widths and `sy` heights from b itself.
+struct PairKey {
+  int a = 0, b = 0;
+  std::int8_t sx = 0, sy = 0;
+  auto operator<=>(const PairKey&) const = default;
+};
+
+struct BodyPair {
+  PairKey key;
+  // Contacts of the last step: a range of the narrow phase's memory ...
+  int first = 0, count = 0;
+  // ... all that are closer than `margin`, found when the bodies had travelled so far; below 0: to be found anew.
+  double margin = -1, travelled = 0;
+};
+
+class BroadPhase {
+ public:
+  explicit BroadPhase(const RigidWalls& walls) : walls_(walls) {}
+
+  /// Brings pairs() up to date for a step of `dt`.
+  void update(const Bodies& bodies, Vec2 gravity, double dt);
+  /// Within a step: makes sure that the box of each body that is listed holds its way for another `dt`. Gives
+  /// pairs that are new; pairs() has them from the next update on.
+  void extend(const Bodies& bodies, const std::vector<int>& which, Vec2 gravity, double dt,
+              std::vector<PairKey>& found);
+
+  std::vector<BodyPair>& pairs() { return pairs_; }
+  Vec2 shiftOf(const PairKey& key) const { return {key.sx * walls_.width, key.sy * walls_.height}; }
+
+ private:
+  bool fit(const Bodies& bodies, int body, Vec2 gravity, double dt);
+  void search(const Bodies& bodies, int body, std::vector<PairKey>& found) const;
+
+  RigidWalls walls_;
+  std::vector<Box> fat_;
+  std::vector<char> listed_, refitted_;  // by body
+  BoxTree tree_;
+  std::vector<int> items_;
+  std::vector<BodyPair> pairs_, merged_;
+  std::vector<PairKey> found_, late_;  // late: found within a step
+  long sinceBuild_ = 0;
+};
+
+/// Box of a body whose frame is `frame`.
+Box boxOf(const BodyShape& shape, const Frame& frame);
+
+}  // namespace smokebox

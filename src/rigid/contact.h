@@ -1,0 +1,29 @@
+// Where two pieces of two bodies touch or are about to: one normal and up to two points.
+#pragma once
+#include <cstdint>
+
+#include "geometry/vec2.h"
+
+namespace smokebox {
+
+struct ContactPoint {
+  Vec2 armA, armB;      // from each body's centre of mass
+  double gap = 0;       // m, below 0: overlap; for the bodies' places when the contact was found
+  double massN = 0, massT = 0;  // effective masses along the normal and the tangent, kg
+  double impulseN = 0, impulseT = 0;  // N s of a sub-step
+  std::uint32_t feature = 0;
+};
+
+struct Contact {
+  int a = 0, b = 0;
+  int pieceA = 0, pieceB = 0;
+  Vec2 normal;  // from a to b
+  Vec2 shift;   // of the image of b that is meant, beyond a periodic side
+  int count = 0;
+  double friction = 0, bounce = 0;
+  double approach = 0;  // fastest at which its points met in this step, m/s
+  double total = 0;     // N s along the normal in this step, impacts too
+  ContactPoint points[2];
+};
+
+}  // namespace smokebox

@@ -1,0 +1,241 @@
+#include "rigid/contact_blocks.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace smokebox {
+
+namespace {
+
+using Lanes = ContactBlocks::Lanes;
+constexpr int kColours = 64;
+
+struct Motions {
+  Lanes x, y, turn;
+};
+
+/// Four bodies' motions, one a lane.
+inline Motions gather(const Motion* from, const int* index) {
+  const Lanes r0 = *reinterpret_cast<const Lanes*>(from + index[0]);
+  const Lanes r1 = *reinterpret_cast<const Lanes*>(from + index[1]);
+  const Lanes r2 = *reinterpret_cast<const Lanes*>(from + index[2]);
+  const Lanes r3 = *reinterpret_cast<const Lanes*>(from + index[3]);
+  const Lanes s0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6), s1 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
+  const Lanes t0 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7), t1 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+  return {__builtin_shufflevector(s0, s1, 0, 1, 4, 5), __builtin_shufflevector(t0, t1, 0, 1, 4, 5),
+          __builtin_shufflevector(s0, s1, 2, 3, 6, 7)};
+}
+
+/// Lanes whose bit is not set are left alone: their body does not move, and may be in several lanes.
+inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motions& m) {
+  const Lanes zero = {0, 0, 0, 0};
+  const Lanes s0 = __builtin_shufflevector(m.x, m.y, 0, 4, 1, 5), s1 = __builtin_shufflevector(m.x, m.y, 2, 6, 3, 7);
+  const Lanes t0 = __builtin_shufflevector(m.turn, zero, 0, 4, 1, 5),
+              t1 = __builtin_shufflevector(m.turn, zero, 2, 6, 3, 7);
+  if (bits & 1) *reinterpret_cast<Lanes*>(to + index[0]) = __builtin_shufflevector(s0, t0, 0, 1, 4, 5);
+  if (bits & 2) *reinterpret_cast<Lanes*>(to + index[1]) = __builtin_shufflevector(s0, t0, 2, 3, 6, 7);
+  if (bits & 4) *reinterpret_cast<Lanes*>(to + index[2]) = __builtin_shufflevector(s1, t1, 0, 1, 4, 5);
+  if (bits & 8) *reinterpret_cast<Lanes*>(to + index[3]) = __builtin_shufflevector(s1, t1, 2, 3, 6, 7);
+}
+
+inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
+inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
+
+}  // namespace
+
+void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest) {
+  const int count = static_cast<int>(contacts.size());
+  used_.assign(bodies.count(), 0);
+  colour_.resize(count);
+  place_.assign(count, -1);
+  start_.assign(kColours + 1, 0);
+  rest.clear();
+  // Those that bear something choose first: the order of a sweep does not change with what is merely near.
+  for (const bool bearing : {true, false})
+    for (int k = 0; k < count; ++k) {
+      const Contact& c = contacts[k];
+      const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0 || c.points[0].gap < 1e-3 || c.points[1].gap<1e-3;
+      if (bears != bearing) continue;
+      const bool movesA = bodies.moves(c.a), movesB = bodies.moves(c.b);
+      const std::uint64_t used = (movesA ? used_[c.a] : 0) | (movesB ? used_[c.b] : 0);
+      if (~used == 0) {
+        colour_[k] = -1;
+        rest.push_back(k);
+        continue;
+      }
+      const int colour = std::countr_one(used);
+      colour_[k] = colour;
+      if (movesA) used_[c.a] |= std::uint64_t{1} << colour;
+      if (movesB) used_[c.b] |= std::uint64_t{1} << colour;
+      ++start_[colour + 1];
+    }
+  // Each colour begins a new block.
+  std::size_t blocks = 0;
+  for (int colour = 0; colour < kColours; ++colour) {
+    const int lanes = start_[colour + 1];
+    start_[colour] = static_cast<int>(blocks) * kLanes;
+    blocks += (lanes + kLanes - 1) / kLanes;
+  }
+  blocks_.assign(blocks, Block{});
+  for (Block& block : blocks_)
+    for (int l = 0; l < kLanes; ++l) block.contact[l] = -1;
+  for (int k = 0; k < count; ++k) {
+    if (colour_[k] < 0) continue;
+    const int at = start_[colour_[k]]++;
+    place_[k] = at;
+    Block& block = blocks_[at / kLanes];
+    const int l = at % kLanes;
+    const Contact& c = contacts[k];
+    block.a[l] = c.a;
+    block.b[l] = c.b;
+    block.contact[l] = k;
+    if (bodies.moves(c.a)) block.storeA |= 1 << l;
+    if (bodies.moves(c.b)) block.storeB |= 1 << l;
+    block.nx[l] = c.normal.x;
+    block.ny[l] = c.normal.y;
+    block.friction[l] = c.friction;
+    block.inverseA[l] = bodies.inverse[c.a].mass;
+    block.inertiaA[l] = bodies.inverse[c.a].inertia;
+    block.inverseB[l] = bodies.inverse[c.b].mass;
+    block.inertiaB[l] = bodies.inverse[c.b].inertia;
+    const Vec2 tangent = perpendicular(c.normal);
+    for (int p = 0; p < c.count; ++p) {
+      const ContactPoint& from = c.points[p];
+      Point& to = block.points[p];
+      to.armAN[l] = cross(from.armA, c.normal);
+      to.armBN[l] = cross(from.armB, c.normal);
+      to.armAT[l] = cross(from.armA, tangent);
+      to.armBT[l] = cross(from.armB, tangent);
+      to.gap[l] = from.gap;
+      to.massN[l] = from.massN;
+      to.massT[l] = from.massT;
+      to.impulseN[l] = from.impulseN;
+      to.total[l] = -from.impulseN;  // which the first sweep counts, but belongs to the step before
+      to.impulseT[l] = from.impulseT;
+    }
+  }
+}
+
+void ContactBlocks::warmStart(Bodies& bodies) const {
+  Motion* velocity = bodies.velocity.data();
+  for (const Block& block : blocks_) {
+    Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
+    for (const Point& p : block.points) {
+      // Tangent: the normal turned by 90 degrees counterclockwise.
+      const Lanes px = block.nx * p.impulseN - block.ny * p.impulseT,
+                  py = block.ny * p.impulseN + block.nx * p.impulseT;
+      va.x -= block.inverseA * px;
+      va.y -= block.inverseA * py;
+      va.turn -= block.inertiaA * (p.armAN * p.impulseN + p.armAT * p.impulseT);
+      vb.x += block.inverseB * px;
+      vb.y += block.inverseB * py;
+      vb.turn += block.inertiaB * (p.armBN * p.impulseN + p.armBT * p.impulseT);
+    }
+    scatter(velocity, block.a, block.storeA, va);
+    scatter(velocity, block.b, block.storeB, vb);
+  }
+}
+
+double ContactBlocks::solve(Bodies& bodies, double h, bool first) {
+  Motion* velocity = bodies.velocity.data();
+  const Motion* moved = bodies.moved.data();
+  const Lanes rate = Lanes{} + 1 / h;
+  Lanes largest{};
+  for (Block& block : blocks_) {
+    Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
+    const Motions da = gather(moved, block.a), db = gather(moved, block.b);
+    const Lanes nx = block.nx, ny = block.ny;
+    const Lanes apart = nx * (db.x - da.x) + ny * (db.y - da.y);
+    Lanes deepest{};
+    for (Point& p : block.points) {
+      if (first) p.total += p.impulseN;  // what the last sub-step came to
+      const Lanes gap = p.gap + apart + db.turn * p.armBN - da.turn * p.armAN;
+      deepest = smaller(deepest, gap);
+      const Lanes allowed = larger(gap, Lanes{}) * rate;
+      const Lanes vn = nx * (vb.x - va.x) + ny * (vb.y - va.y) + vb.turn * p.armBN - va.turn * p.armAN;
+      const Lanes total = larger(p.impulseN - p.massN * (vn + allowed), Lanes{});
+      const Lanes change = total - p.impulseN;
+      p.impulseN = total;
+      va.x -= block.inverseA * nx * change;
+      va.y -= block.inverseA * ny * change;
+      va.turn -= block.inertiaA * p.armAN * change;
+      vb.x += block.inverseB * nx * change;
+      vb.y += block.inverseB * ny * change;
+      vb.turn += block.inertiaB * p.armBN * change;
+      const Lanes size = change < 0 ? -change : change;
+      // change / massN is the change of velocity; lanes without a point have neither.
+      const Lanes shift = p.massN > 0 ? size / p.massN : Lanes{};
+      largest = larger(largest, shift);
+
+      const Lanes vt = nx * (vb.y - va.y) - ny * (vb.x - va.x) + vb.turn * p.armBT - va.turn * p.armAT;
+      const Lanes most = block.friction * p.impulseN;
+      const Lanes tangential = smaller(larger(p.impulseT - p.massT * vt, -most), most);
+      const Lanes slide = tangential - p.impulseT;
+      p.impulseT = tangential;
+      va.x += block.inverseA * ny * slide;
+      va.y -= block.inverseA * nx * slide;
+      va.turn -= block.inertiaA * p.armAT * slide;
+      vb.x -= block.inverseB * ny * slide;
+      vb.y += block.inverseB * nx * slide;
+      vb.turn += block.inertiaB * p.armBT * slide;
+    }
+    if (first) block.deepest = std::min(std::min(deepest[0], deepest[1]), std::min(deepest[2], deepest[3]));
+    scatter(velocity, block.a, block.storeA, va);
+    scatter(velocity, block.b, block.storeB, vb);
+  }
+  double result = 0;
+  for (int l = 0; l < kLanes; ++l) result = std::max(result, largest[l]);
+  return result;
+}
+
+void ContactBlocks::separate(Bodies& bodies, double slop, double share, double most) const {
+  Motion* moved = bodies.moved.data();
+  const Lanes cap = Lanes{} + most;
+  for (const Block& block : blocks_) {
+    if (block.deepest >= -slop) continue;
+    Motions da = gather(moved, block.a), db = gather(moved, block.b);
+    bool any = false;
+    for (const Point& p : block.points) {
+      const Lanes gap = p.gap + block.nx * (db.x - da.x) + block.ny * (db.y - da.y) + db.turn * p.armBN -
+                        da.turn * p.armAN;
+      const Lanes overlap = smaller(larger(-share * gap, Lanes{}), cap) * p.massN;
+      if (!(overlap[0] > 0 || overlap[1] > 0 || overlap[2] > 0 || overlap[3] > 0)) continue;
+      any = true;
+      da.x -= block.inverseA * block.nx * overlap;
+      da.y -= block.inverseA * block.ny * overlap;
+      da.turn -= block.inertiaA * p.armAN * overlap;
+      db.x += block.inverseB * block.nx * overlap;
+      db.y += block.inverseB * block.ny * overlap;
+      db.turn += block.inertiaB * p.armBN * overlap;
+    }
+    if (!any) continue;
+    scatter(moved, block.a, block.storeA, da);
+    scatter(moved, block.b, block.storeB, db);
+  }
+}
+
+void ContactBlocks::readLane(const Block& block, int lane, Contact& contact) {
+  for (int p = 0; p < contact.count; ++p) {
+    contact.points[p].impulseN = block.points[p].impulseN[lane];
+    contact.points[p].impulseT = block.points[p].impulseT[lane];
+    contact.total += block.points[p].total[lane] + block.points[p].impulseN[lane];
+  }
+}
+
+void ContactBlocks::drop(int index, Contact& contact) {
+  if (place_[index] < 0) return;
+  Block& block = blocks_[place_[index] / kLanes];
+  const int l = place_[index] % kLanes;
+  readLane(block, l, contact);
+  for (Point& p : block.points) p.massN[l] = p.massT[l] = p.impulseN[l] = p.impulseT[l] = 0;
+  block.contact[l] = -1;
+  place_[index] = -1;
+}
+
+void ContactBlocks::readBack(std::vector<Contact>& contacts) const {
+  for (const Block& block : blocks_)
+    for (int l = 0; l < kLanes; ++l)
+      if (block.contact[l] >= 0) readLane(block, l, contacts[block.contact[l]]);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,60 @@
+// Contacts that stay as they are for a whole step, solved four at a time: warm-started projected Gauss-Seidel
+// on impulses with Coulomb's friction (Catto 2005, Iterative Dynamics with Temporal Coherence), in colours:
+// no moving body is met twice within a block, so the order of the lanes does not matter.
+//
+// A contact that is not closed yet may close within the sub-step but not go beyond (Mirtich's and Catto's
+// speculative contact): v_n >= -gap / h. What overlaps is moved apart by separate() on places alone.
+#pragma once
+#include <vector>
+
+#include "rigid/bodies.h"
+#include "rigid/contact.h"
+
+namespace smokebox {
+
+class ContactBlocks {
+ public:
+  static constexpr int kLanes = 4;
+  typedef double Lanes __attribute__((vector_size(32)));
+
+  /// Colours the contacts and lays them out. Those that find no colour are listed in `rest`.
+  void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest);
+  bool empty() const { return blocks_.empty(); }
+  std::size_t size() const { return blocks_.size(); }
+
+  /// Adds the impulses to the velocities.
+  void warmStart(Bodies& bodies) const;
+  /// One sweep (the first of a sub-step or a further one). Gives the largest change of a relative velocity, m/s.
+  double solve(Bodies& bodies, double h, bool first);
+  /// Moves bodies apart that overlapped by more than `slop` in the last first sweep: a share of the overlap, at
+  /// most `most` metres.
+  void separate(Bodies& bodies, double slop, double share, double most) const;
+  /// Takes contact `index` out for the rest of the step; `contact` gets its impulses.
+  void drop(int index, Contact& contact);
+  /// Copies the impulses back, the last ones and their totals; contacts that were dropped keep theirs.
+  void readBack(std::vector<Contact>& contacts) const;
+  std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
+
+ private:
+  struct Block;
+  static void readLane(const Block& block, int lane, Contact& contact);
+  struct Point {
+    Lanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
+    Lanes gap, massN, massT, impulseN, impulseT, total;
+  };
+  struct alignas(64) Block {
+    int a[kLanes], b[kLanes];
+    int contact[kLanes];             // -1: empty lane
+    std::uint8_t storeA, storeB;     // bits: the lane's body moves
+    double deepest;                  // smallest gap in the last first sweep
+    Lanes nx, ny, friction;
+    Lanes inverseA, inertiaA, inverseB, inertiaB;
+    Point points[2];
+  };
+  std::vector<Block> blocks_;
+  std::vector<std::uint64_t> used_;  // colours at each body
+  std::vector<int> colour_, place_;  // by contact: colour; block * kLanes + lane, or -1
+  std::vector<int> order_, start_;
+};
+
+}  // namespace smokebox

@@ -1,0 +1,26 @@
+// The contact solver one contact at a time, for contacts that are found anew in every sub-step; see
+// contact_blocks.h for the method.
+#pragma once
+#include <vector>
+
+#include "rigid/bodies.h"
+#include "rigid/contact.h"
+
+namespace smokebox {
+
+/// Effective masses of all points, from the arms and the normal.
+void setMasses(const Bodies& bodies, Contact& contact);
+/// Speed at which a point's sides part along the normal, m/s.
+double partingSpeed(const Bodies& bodies, const Contact& contact, const ContactPoint& point);
+/// How much of a point's gap the bodies' displacements since the step's start make up, m.
+double gapMoved(const Bodies& bodies, const Contact& contact, const ContactPoint& point);
+/// Adds an impulse along the normal and the tangent to the velocities.
+void pushApart(Bodies& bodies, const Contact& contact, const ContactPoint& point, double normal,
+               double tangential);
+
+void warmStart(Bodies& bodies, const std::vector<Contact>& contacts);
+/// One sweep; gives the largest change of a relative velocity, m/s.
+double solve(Bodies& bodies, std::vector<Contact>& contacts, double h);
+void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most);
+
+}  // namespace smokebox

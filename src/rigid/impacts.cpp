@@ -1,0 +1,177 @@
+#include "rigid/impacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rigid/contact_sweeps.h"
+
+namespace smokebox {
+
+namespace {
+// Points of one contact that close within this share of a sub-step of each other strike together.
+constexpr double kTogether = 0.02;
+}  // namespace
+
+Vec2 Impacts::acceleration(const Bodies& bodies, const Contact& contact) const {
+  const double b = bodies.moves(contact.b) ? bodies.def[contact.b].gravityScale : 0;
+  const double a = bodies.moves(contact.a) ? bodies.def[contact.a].gravityScale : 0;
+  return (b - a) * gravity_;
+}
+
+Impacts::Approach Impacts::approach(const Bodies& bodies, const std::vector<Motion>& way,
+                                    const Contact& contact, const ContactPoint& point, double h,
+                                    double now) const {
+  const Motion &wa = way[contact.a], &wb = way[contact.b];
+  const double gap = point.gap + gapMoved(bodies, contact, point) +
+                     dot(contact.normal, wb.linear() - wa.linear()) +
+                     wb.turn * cross(point.armB, contact.normal) - wa.turn * cross(point.armA, contact.normal);
+  const double a = dot(acceleration(bodies, contact), contact.normal);
+  const double v = partingSpeed(bodies, contact, point) - 0.5 * a * h;  // at the sub-step's start
+  double t = now;
+  if (gap + (v + 0.5 * a * now) * now > 0) {
+    const double root = v * v - 2 * a * gap;
+    if (root < 0 || v >= 0) return {};
+    t = std::max(2 * gap / (-v + std::sqrt(root)), now);
+    if (t > h) return {};
+  }
+  return {t, v + a * t};
+}
+
+void Impacts::schedule(const Bodies& bodies, const std::vector<Motion>& way,
+                       const std::vector<Contact*>& contacts, int k, double h, double least, double now) {
+  const Contact& contact = *contacts[k];
+  ++stamps_[k];
+  double first = h;
+  bool any = false;
+  for (int p = 0; p < contact.count; ++p) {
+    const Approach at = approach(bodies, way, contact, contact.points[p], h, now);
+    if (at.speed >= -least) continue;
+    any = true;
+    first = std::min(first, at.time);
+  }
+  if (!any) return;
+  heap_.push_back({first, k, stamps_[k]});
+  std::push_heap(heap_.begin(), heap_.end());
+}
+
+void Impacts::push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse, double time,
+                   std::vector<Motion>& way) {
+  auto one = [&](int body, Vec2 arm, Vec2 j) {
+    const Motion before = bodies.velocity[body];
+    bodies.push(body, arm, j);
+    const Motion& after = bodies.velocity[body];
+    way[body].x -= time * (after.x - before.x);
+    way[body].y -= time * (after.y - before.y);
+    way[body].turn -= time * (after.turn - before.turn);
+  };
+  one(contact.a, armA, -impulse);
+  one(contact.b, armB, impulse);
+}
+
+void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, double now,
+                     std::vector<Motion>& way) {
+  const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
+  const Vec2 n = contact.normal, tangent = perpendicular(n);
+  const double late = dot(acceleration(bodies, contact), n) * (now - 0.5 * h);
+  const Vec2 xa = bodies.positionNow(contact.a) + way[contact.a].linear() +
+                  now * bodies.velocity[contact.a].linear(),
+             xb = bodies.positionNow(contact.b) + way[contact.b].linear() +
+                  now * bodies.velocity[contact.b].linear() + contact.shift;
+
+  // The points that strike now, with arms from where the centres of mass are at this moment to one common
+  // point: so that the two impulses have no moment together.
+  ContactPoint struck[2];
+  int count = 0;
+  for (int p = 0; p < contact.count; ++p) {
+    const ContactPoint& point = contact.points[p];
+    const Approach at = approach(bodies, way, contact, point, h, now);
+    if (at.speed >= -least || at.time > now + kTogether * h) continue;
+    const Vec2 slip = 0.5 * ((xb - xa) - (point.armA - point.armB));
+    struck[count] = point;
+    struck[count].armA = point.armA + slip;
+    struck[count++].armB = point.armB - slip;
+  }
+  if (count == 0) return;
+
+  auto response = [&](const ContactPoint& p, Vec2 d, const ContactPoint& q, Vec2 e) {
+    return dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
+           mb.inertia * cross(p.armB, d) * cross(q.armB, e);
+  };
+  auto approaching = [&](const ContactPoint& p) { return partingSpeed(bodies, contact, p) + late; };
+  auto pushNormal = [&](const ContactPoint& p, double impulse) {
+    push(bodies, contact, p.armA, p.armB, impulse * n, now, way);
+    contact.total += impulse;
+  };
+  double normal[2] = {0, 0};
+  const double keep = 1 + contact.bounce;
+  for (int k = 0; k < count; ++k) contact.approach = std::max(contact.approach, -approaching(struck[k]));
+  bool together = false;
+  if (count == 2) {  // both at once, if both push
+    const double k00 = response(struck[0], n, struck[0], n), k01 = response(struck[0], n, struck[1], n),
+                 k11 = response(struck[1], n, struck[1], n);
+    const double r0 = -keep * approaching(struck[0]), r1 = -keep * approaching(struck[1]);
+    const double det = k00 * k11 - k01 * k01;
+    if (det > 1e-9 * k00 * k11) {
+      normal[0] = (k11 * r0 - k01 * r1) / det;
+      normal[1] = (k00 * r1 - k01 * r0) / det;
+      together = normal[0] >= 0 && normal[1] >= 0;
+      if (together)
+        for (int k = 0; k < 2; ++k) pushNormal(struck[k], normal[k]);
+    }
+  }
+  if (!together) {
+    normal[0] = normal[1] = 0;
+    for (int k = 0; k < count; ++k) {
+      const double speed = approaching(struck[k]);
+      if (speed >= -least) continue;
+      normal[k] = -keep * speed / response(struck[k], n, struck[k], n);
+      pushNormal(struck[k], normal[k]);
+    }
+  }
+  if (contact.friction == 0) return;
+  // After the normal impulses: friction at most stops the sliding, so it can only take energy.
+  for (int k = 0; k < count; ++k) {
+    const Vec2 slip = bodies.velocityAt(contact.b, struck[k].armB) - bodies.velocityAt(contact.a, struck[k].armA);
+    const double most = contact.friction * normal[k];
+    const double stop = -dot(tangent, slip) / response(struck[k], tangent, struck[k], tangent);
+    push(bodies, contact, struck[k].armA, struck[k].armB, std::clamp(stop, -most, most) * tangent, now, way);
+  }
+}
+
+void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
+                  std::vector<Motion>& way) {
+  gravity_ = gravity;
+  count_ = 0;
+  const int n = static_cast<int>(contacts.size());
+  heap_.clear();
+  stamps_.assign(n, 0);
+  for (int k = 0; k < n; ++k) schedule(bodies, way, contacts, k, h, least, 0);
+  if (heap_.empty()) return;
+
+  firstAt_.assign(bodies.count(), -1);
+  nextA_.resize(n);
+  nextB_.resize(n);
+  for (int k = n - 1; k >= 0; --k) {
+    nextA_[k] = firstAt_[contacts[k]->a];
+    firstAt_[contacts[k]->a] = 2 * k;
+    nextB_[k] = firstAt_[contacts[k]->b];
+    firstAt_[contacts[k]->b] = 2 * k + 1;
+  }
+  const long most = 64 + 16L * n;
+  while (!heap_.empty() && count_ < most) {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Event event = heap_.back();
+    heap_.pop_back();
+    if (stamps_[event.contact] != event.stamp) continue;
+    Contact& contact = *contacts[event.contact];
+    strike(bodies, contact, h, least, event.time, way);
+    ++count_;
+    for (const int body : {contact.a, contact.b}) {
+      if (!bodies.moves(body)) continue;
+      for (int at = firstAt_[body]; at >= 0; at = at % 2 == 0 ? nextA_[at / 2] : nextB_[at / 2])
+        schedule(bodies, way, contacts, at / 2, h, least, event.time);
+    }
+  }
+}
+
+}  // namespace smokebox

@@ -1,0 +1,53 @@
+// Impacts within a sub-step, one after the other at their own moments: Newton's restitution on the true speed
+// of approach, then Coulomb's friction.
+//
+// With a leapfrog velocity v (of the middle of the sub-step) and the bodies' relative acceleration a of gravity
+// along the normal, the gap is g + (v - a h/2) t + a t^2/2 and the speed of approach at its root t is
+// w = v + a (t - h/2). The impulse changes v by -(1 + e) w, and the body's way by -t times the change of its
+// velocity: so flight, bounce and flight again are exact, whenever within the sub-step the bounce falls.
+// Impulses go on (body to body to body: a cradle) until nothing approaches, up to a bound; each one takes
+// energy or keeps it, so that however many there are, none is added.
+#pragma once
+#include <vector>
+
+#include "rigid/bodies.h"
+#include "rigid/contact.h"
+
+namespace smokebox {
+
+class Impacts {
+ public:
+  /// `contacts`: those that may bounce. Slower approaches than `least` (m/s) are left to the contact solver.
+  /// Adds what the impacts change of the bodies' ways to `way`.
+  void run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
+           std::vector<Motion>& way);
+  long count() const { return count_; }  // of the last run
+
+ private:
+  struct Event {
+    double time;
+    int contact, stamp;
+    bool operator<(const Event& o) const {  // of a heap: the earliest on top
+      return time > o.time || (time == o.time && contact > o.contact);
+    }
+  };
+  struct Approach {
+    double time = 0, speed = 0;  // of the point: when it closes, how fast; speed >= 0: it does not
+  };
+  Approach approach(const Bodies& bodies, const std::vector<Motion>& way, const Contact& contact,
+                    const ContactPoint& point, double h, double now) const;
+  void schedule(const Bodies& bodies, const std::vector<Motion>& way, const std::vector<Contact*>& contacts,
+                int k, double h, double least, double now);
+  void strike(Bodies& bodies, Contact& contact, double h, double least, double now, std::vector<Motion>& way);
+  void push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse, double time,
+            std::vector<Motion>& way);
+  Vec2 acceleration(const Bodies& bodies, const Contact& contact) const;
+
+  Vec2 gravity_;
+  long count_ = 0;
+  std::vector<Event> heap_;
+  std::vector<int> stamps_;
+  std::vector<int> firstAt_, nextA_, nextB_;  // lists of contacts at each body
+};
+
+}  // namespace smokebox

@@ -1,0 +1,321 @@
+#include "rigid/narrow_phase.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rigid/collide.h"
+#include "rigid/contact_sweeps.h"
+#include "rigid/distance.h"
+
+namespace smokebox {
+
+namespace {
+
+// A pair is calm while its bodies move against each other by less than this share of the thinner one's width
+// in a step (less if they bounce): the contact's normal and corners then still hold at its end.
+constexpr double kCalm = 0.25, kCalmBouncing = 0.05;
+constexpr double kCalmTurn = 0.1;  // rad
+// A body may stray by this share of its width from the way expected of it.
+constexpr double kStray = 0.02;
+// Contacts are found anew once the bodies have moved by this share of the thinner one's width.
+constexpr double kReuse = 2e-3;
+// A lively pair that is this many sub-steps apart is left alone for as long.
+constexpr double kAhead = 4;
+// Beyond this share of the thinner one's width in a sub-step, a pair is swept.
+constexpr double kSwept = 0.25;
+// Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way.
+constexpr double kNear = 0.02;
+// Swept pairs are stopped at this share of the thinner one's width from each other.
+constexpr double kTarget = 1e-3;
+
+/// How far from the centre of mass a turn moves anything: nothing of a disk that turns about its centre.
+double turningReach(const BodyShape& shape) {
+  const ConvexPiece& first = shape.pieces[0];
+  return shape.pieces.size() == 1 && first.points.size() == 1 && first.points[0] == Vec2{0, 0} ? 0 : shape.reach;
+}
+
+/// Largest speed of any point of one against any of the other.
+double relativeSpeed(const Bodies& bodies, int a, int b) {
+  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
+  return length(va.linear() - vb.linear()) + std::abs(va.turn) * turningReach(*bodies.def[a].shape) +
+         std::abs(vb.turn) * turningReach(*bodies.def[b].shape);
+}
+
+double thinner(const Bodies& bodies, int a, int b) {
+  return std::min(bodies.def[a].shape->thinnest, bodies.def[b].shape->thinnest);
+}
+
+/// Distance of the point from the box around a body's pieces.
+double distanceFrom(const BodyShape& shape, const Frame& frame, Vec2 point) {
+  const PieceTree::Node& box = shape.tree.nodes()[0];
+  const Vec2 p = toLocal(frame, point) - box.centre;
+  const Vec2 out{std::max(std::abs(p.x) - box.half.x, 0.0), std::max(std::abs(p.y) - box.half.y, 0.0)};
+  return length(out);
+}
+
+/// Are they surely farther apart than `margin`? Cheap; a body that does not turn tells more.
+bool surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) {
+  const BodyShape &a = *bodies.def[key.a].shape, &b = *bodies.def[key.b].shape;
+  if (a.tree.nodes().empty() || b.tree.nodes().empty()) return true;
+  const Vec2 pa = bodies.positionNow(key.a), pb = bodies.positionNow(key.b) + shift;
+  const Vec2 between = pb - pa;
+  const double reach = a.reach + b.reach + margin;
+  if (dot(between, between) > reach * reach) return true;
+  if (bodies.moved[key.a].turn == 0 && distanceFrom(a, {pa, bodies.turn[key.a]}, pb) > b.reach + margin)
+    return true;
+  return bodies.moved[key.b].turn == 0 && distanceFrom(b, {pb, bodies.turn[key.b]}, pa) > a.reach + margin;
+}
+
+}  // namespace
+
+void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
+                       bool swept, const Contact* old, int oldCount, std::vector<Contact>& found) {
+  const BodyDef &a = bodies.def[key.a], &b = bodies.def[key.b];
+  const Frame fa = bodies.frameNow(key.a);
+  Frame fb = bodies.frameNow(key.b);
+  fb.position = fb.position + shift;
+  findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
+  Manifold manifold;
+  for (const PiecePair& pieces : pieces_) {
+    const ConvexPiece &pa = a.shape->pieces[pieces.a], &pb = b.shape->pieces[pieces.b];
+    const Vec2 apart = toWorld(fb, pb.centre) - toWorld(fa, pa.centre);
+    const double near = pa.reach + pb.reach + margin;
+    if (dot(apart, apart) > near * near) continue;
+    double share = 0;
+    Frame ta = fa, tb = fb;
+    if (swept) {
+      const double target = kTarget * thinner(bodies, key.a, key.b);
+      if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
+        const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
+        const Sweep sa{fa, h * va.linear(), h * va.turn}, sb{fb, h * vb.linear(), h * vb.turn};
+        const auto hit = timeOfImpact(pa, sa, pb, sb, target);
+        if (!hit) continue;
+        share = *hit;
+        ta = frameAt(sa, share);
+        tb = frameAt(sb, share);
+        if (!collide(pa, ta, pb, tb, 4 * target, manifold)) continue;
+      }
+    } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
+      continue;
+    }
+    Contact contact;
+    contact.a = key.a;
+    contact.b = key.b;
+    contact.pieceA = pieces.a;
+    contact.pieceB = pieces.b;
+    contact.normal = manifold.normal;
+    contact.shift = shift;
+    contact.count = manifold.count;
+    contact.friction = std::sqrt(a.friction * b.friction);
+    contact.bounce = std::max(a.bounce, b.bounce);
+    for (int k = 0; k < manifold.count; ++k) {
+      ContactPoint& p = contact.points[k];
+      p.armA = manifold.points[k].point - ta.position;
+      p.armB = manifold.points[k].point - tb.position;
+      p.feature = manifold.points[k].feature;
+      const double speed = partingSpeed(bodies, contact, p);
+      contact.approach = std::max(contact.approach, -speed);
+      // As of the step's start, by the same straight-line rule that brings it up to date.
+      p.gap = manifold.points[k].gap - share * h * speed - gapMoved(bodies, contact, p);
+    }
+    setMasses(bodies, contact);
+    for (int o = 0; o < oldCount; ++o) {
+      const Contact& before = old[o];
+      if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
+      contact.approach = std::max(contact.approach, before.approach);
+      for (int k = 0; k < contact.count; ++k)
+        for (int l = 0; l < before.count; ++l)
+          if (before.points[l].feature == contact.points[k].feature) {
+            contact.points[k].impulseN = before.points[l].impulseN;
+            contact.points[k].impulseT = before.points[l].impulseT;
+          }
+    }
+    found.push_back(contact);
+  }
+}
+
+void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
+  const int count = bodies.count();
+  h_ = dt / subSteps;
+  elapsed_ = 0;
+  expected_.resize(count);
+  travelled_.resize(count, 0);
+  stirred_.assign(count, 0);
+  for (int b = 0; b < count; ++b) {
+    if (!bodies.there[b]) continue;
+    const double fall = length(gravity) * std::abs(bodies.def[b].gravityScale) * dt * dt;
+    expected_[b] = {bodies.velocity[b],
+                    bodies.moves(b) ? fall + kStray * bodies.def[b].shape->thinnest : 0};
+  }
+  auto& pairs = broad.pairs();
+  livelyPair_.assign(pairs.size(), 0);
+  calmFirst_.assign(pairs.size() + 1, 0);
+  calm_.clear();
+  lively_.clear();
+  pairs_.clear();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    BodyPair& pair = pairs[k];
+    const int a = pair.key.a, b = pair.key.b;
+    calmFirst_[k] = static_cast<int>(calm_.size());
+    const double thin = thinner(bodies, a, b);
+    const double way = relativeSpeed(bodies, a, b) * dt;
+    const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
+    const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
+    if (way > (bounces ? kCalmBouncing : kCalm) * thin || (way > kCalmBouncing * thin && turn > kCalmTurn)) {
+      livelyPair_[k] = 1;
+      makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
+      continue;
+    }
+    const double margin = way + expected_[a].room + expected_[b].room;
+    const double since = travelled_[a] + travelled_[b] - pair.travelled;
+    if (since <= kReuse * thin && margin + since <= pair.margin) {
+      calm_.insert(calm_.end(), memory_.begin() + pair.first, memory_.begin() + pair.first + pair.count);
+      for (auto c = calm_.end() - pair.count; c != calm_.end(); ++c) {
+        setMasses(bodies, *c);
+        c->friction = std::sqrt(bodies.def[a].friction * bodies.def[b].friction);
+        c->bounce = std::max(bodies.def[a].bounce, bodies.def[b].bounce);
+        c->approach = 0;
+      }
+      continue;
+    }
+    pair.margin = margin + 2 * kReuse * thin;
+    pair.travelled = travelled_[a] + travelled_[b];
+    if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), pair.margin)) continue;
+    find(bodies, pair.key, broad.shiftOf(pair.key), pair.margin, h_, false, memory_.data() + pair.first, pair.count,
+         calm_);
+  }
+  calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
+  for (Contact& contact : calm_) contact.total = 0;
+  for (Contact& contact : lively_) contact.total = contact.approach = 0;
+  dropped_.assign(calm_.size(), 0);
+}
+
+void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, int count) {
+  LivelyPair made{key, static_cast<int>(lively_.size()), count, false, 0, pair};
+  lively_.insert(lively_.end(), old, old + count);
+  pairs_.push_back(made);
+}
+
+void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double h) {
+  next_.clear();
+  for (LivelyPair& pair : pairs_) {
+    const int a = pair.key.a, b = pair.key.b;
+    const double thin = thinner(bodies, a, b);
+    const double way = relativeSpeed(bodies, a, b) * h;
+    pair.swept = way > kSwept * thin;
+    const int first = static_cast<int>(next_.size());
+    pair.clear -= way;
+    if (pair.clear < 0) {
+      const double near = way + kNear * thin, margin = pair.swept ? way : kAhead * near;
+      if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), margin)) {
+        pair.clear = margin - near;
+      } else {
+        find(bodies, pair.key, broad.shiftOf(pair.key), pair.swept ? way : near, h, pair.swept,
+             lively_.data() + pair.first, pair.count, next_);
+      }
+    }
+    pair.first = first;
+    pair.count = static_cast<int>(next_.size()) - first;
+  }
+  lively_.swap(next_);
+}
+
+bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
+                       ContactBlocks& blocks, double timeLeft) {
+  leaving_.clear();
+  const double t = elapsed_ + h_;
+  for (int b = 0; b < bodies.count(); ++b) {
+    if (stirred_[b] || !bodies.moves(b) || !bodies.there[b]) continue;
+    const Expected& e = expected_[b];
+    const Motion &m = bodies.moved[b], &w = way[b];
+    const Vec2 off = m.linear() + w.linear() - t * e.velocity.linear();
+    const double turned = m.turn + w.turn - t * e.velocity.turn;
+    if (length(off) + std::abs(turned) * turningReach(*bodies.def[b].shape) <= e.room) continue;
+    stirred_[b] = 1;
+    leaving_.push_back(b);
+  }
+  if (leaving_.empty()) return false;
+  bool any = false;
+  const auto& pairs = broad.pairs();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const PairKey& key = pairs[k].key;
+    if (livelyPair_[k] || (!stirred_[key.a] && !stirred_[key.b])) continue;
+    livelyPair_[k] = 1;
+    any = true;
+    const int first = calmFirst_[k], count = calmFirst_[k + 1] - first;
+    for (int c = first; c < first + count; ++c) {
+      blocks.drop(c, calm_[c]);
+      dropped_[c] = 1;
+    }
+    makeLively(key, static_cast<int>(k), calm_.data() + first, count);
+  }
+  late_.clear();
+  broad.extend(bodies, leaving_, gravity, timeLeft, late_);
+  for (const PairKey& key : late_) {
+    makeLively(key, -1, nullptr, 0);
+    any = true;
+  }
+  return any;
+}
+
+void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, std::vector<Motion>& way) {
+  for (const LivelyPair& pair : pairs_) {
+    const int a = pair.key.a, b = pair.key.b;
+    const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
+    const Motion &wa = way[a], &wb = way[b];
+    const double thin = thinner(bodies, a, b);
+    const double most = length(wa.linear() - wb.linear()) + std::abs(wa.turn) * turningReach(sa) +
+                        std::abs(wb.turn) * turningReach(sb);
+    if (most <= kSwept * thin) continue;
+    const Frame fa = bodies.frameNow(a);
+    Frame fb = bodies.frameNow(b);
+    fb.position = fb.position + broad.shiftOf(pair.key);
+    findPiecePairs(sa, fa, sb, fb, most, pieces_);
+    double first = 1;
+    const double target = 0.5 * kTarget * thin;
+    for (const PiecePair& pieces : pieces_) {
+      const ConvexPiece &pa = sa.pieces[pieces.a], &pb = sb.pieces[pieces.b];
+      Manifold manifold;
+      if (collide(pa, fa, pb, fb, 1.1 * target, manifold)) continue;  // they touch: a matter of impulses
+      const auto hit = timeOfImpact(pa, {fa, wa.linear(), wa.turn}, pb, {fb, wb.linear(), wb.turn}, target);
+      if (hit) first = std::min(first, *hit);
+    }
+    if (first >= 1) continue;
+    for (const int body : {a, b}) {
+      if (!bodies.moves(body)) continue;
+      way[body].x *= first;
+      way[body].y *= first;
+      way[body].turn *= first;
+    }
+  }
+}
+
+void NarrowPhase::endStep(const Bodies& bodies, BroadPhase& broad) {
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Motion& m = bodies.moved[b];
+    travelled_[b] += length(m.linear()) + std::abs(m.turn) * turningReach(*bodies.def[b].shape);
+  }
+  for (std::size_t k = 0; k < calm_.size(); ++k)
+    for (int p = 0; p < calm_[k].count; ++p)  // bring it up to date: it may be used again
+      calm_[k].points[p].gap += gapMoved(bodies, calm_[k], calm_[k].points[p]);
+  memory_.swap(calm_);
+  auto& pairs = broad.pairs();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k].first = calmFirst_[k];
+    pairs[k].count = livelyPair_[k] ? 0 : calmFirst_[k + 1] - calmFirst_[k];
+    if (livelyPair_[k]) pairs[k].margin = -1;
+  }
+  for (const LivelyPair& pair : pairs_) {
+    if (pair.pair < 0) continue;
+    pairs[pair.pair].first = static_cast<int>(memory_.size());
+    pairs[pair.pair].count = pair.count;
+    memory_.insert(memory_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
+  }
+}
+
+std::size_t NarrowPhase::bytes() const {
+  return (calm_.capacity() + lively_.capacity() + next_.capacity() + memory_.capacity()) * sizeof(Contact) +
+         pairs_.capacity() * sizeof(LivelyPair);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,72 @@
+// Which points of which bodies touch or are about to.
+//
+// Most pairs move little against each other in a step: their contacts are found once, at its start, with a
+// margin for what may happen (calm contacts). Pairs that close in fast, or of which a body is thrown off the
+// way that was expected of it, are looked at anew in every sub-step (lively contacts); those that could pass
+// through each other within a sub-step by a swept test.
+#pragma once
+#include <vector>
+
+#include "rigid/broad_phase.h"
+#include "rigid/collide_bodies.h"
+#include "rigid/contact.h"
+#include "rigid/contact_blocks.h"
+
+namespace smokebox {
+
+class NarrowPhase {
+ public:
+  /// Sorts the pairs into calm and lively, and finds the calm contacts for a step of `dt`.
+  void beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps);
+  /// Finds the lively contacts for the coming sub-step, with the impulses of the last one.
+  void refresh(const Bodies& bodies, const BroadPhase& broad, double h);
+  /// Bodies that would leave the way that was expected of them if they moved by `way` now: from then on their
+  /// pairs are lively. True if there are any (refresh again).
+  bool stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
+            ContactBlocks& blocks, double timeLeft);
+  /// Pairs that would pass through each other by moving `way`: both are stopped where they meet.
+  void stopPassing(const Bodies& bodies, const BroadPhase& broad, std::vector<Motion>& way);
+  /// A sub-step has passed.
+  void advance() { elapsed_ += h_; }
+  /// Remembers the contacts and their impulses for the next step.
+  void endStep(const Bodies& bodies, BroadPhase& broad);
+
+  std::vector<Contact>& calm() { return calm_; }
+  const std::vector<Contact>& calm() const { return calm_; }
+  std::vector<Contact>& lively() { return lively_; }
+  const std::vector<Contact>& lively() const { return lively_; }
+  /// Contacts of a lively pair count only while it is so: calm ones that were dropped.
+  bool isDropped(int calm) const { return dropped_[calm]; }
+  std::size_t bytes() const;
+
+ private:
+  struct LivelyPair {
+    PairKey key;
+    int first = 0, count = 0;  // in lively_
+    bool swept = false;        // could pass through each other within a sub-step
+    double clear = 0;          // they surely stay apart until they have moved so far against each other, m
+    int pair = -1;             // in the broad phase's list; -1: found within the step
+  };
+  struct Expected {
+    Motion velocity;  // at the step's start
+    double room = 0;  // how far its points may be from where that takes them
+  };
+  void find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
+            const Contact* old, int oldCount, std::vector<Contact>& found);
+  void makeLively(const PairKey& key, int pair, const Contact* old, int count);
+
+  std::vector<Contact> calm_, lively_, next_, memory_;
+  std::vector<char> dropped_;
+  std::vector<LivelyPair> pairs_;
+  std::vector<Expected> expected_;
+  std::vector<double> travelled_;  // by body: longest way of any of its points so far, m
+  std::vector<char> stirred_;
+  std::vector<char> livelyPair_;  // by index of the broad phase's pairs
+  std::vector<int> calmFirst_;    // by pair: range in calm_
+  std::vector<PiecePair> pieces_;
+  std::vector<PairKey> late_;
+  std::vector<int> leaving_;
+  double elapsed_ = 0, h_ = 0;
+};
+
+}  // namespace smokebox

@@ -1,0 +1,217 @@
+#include "rigid/system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/hash.h"
+#include "rigid/system_state.h"
+
+namespace smokebox {
+
+RigidSystem::RigidSystem(const RigidWalls& walls, Vec2 gravity, const RigidMethod& method, ThreadPool& pool)
+    : state_(std::make_unique<State>(walls, gravity, method, pool)) {}
+RigidSystem::~RigidSystem() = default;
+
+void RigidSystem::step(double dt) {
+  State& s = *state_;
+  const double h = dt / s.method.subSteps;
+  s.beginStep(dt);
+  for (int k = 0; k < s.method.subSteps; ++k) {
+    s.predict(h);
+    s.bounce(h);
+    s.solveContacts(h);
+    s.move(h);
+  }
+  s.endStep(dt);
+}
+
+// --- what there is
+// ----------------------------------------------------------------------------------------------------------
+
+int RigidSystem::add(const BodyDef& def) {
+  State& s = *state_;
+  Bodies& bodies = s.bodies;
+  const int body = bodies.count();
+  bodies.def.push_back(def);
+  bodies.velocity.push_back({def.velocity.x, def.velocity.y, def.spin});
+  bodies.moved.push_back({});
+  bodies.inverse.push_back({});
+  bodies.position.push_back(def.position);
+  bodies.angleRad.push_back(def.angleRad);
+  bodies.turn.push_back(turnBy(def.angleRad));
+  bodies.there.push_back(1);
+  s.resume.push_back({});
+  s.fresh.push_back(1);
+  s.departed.push_back(0);
+  s.targetPlace.push_back(def.position);
+  s.targetAngle.push_back(def.angleRad);
+  s.gained.push_back({});
+  s.setInverse(body);
+  if (def.held) {
+    s.resume[body] = bodies.velocity[body];
+    bodies.velocity[body] = {};
+  }
+  return body;
+}
+
+void RigidSystem::remove(int body) {
+  State& s = *state_;
+  s.bodies.there[body] = 0;
+  s.bodies.inverse[body] = {};
+  s.bodies.velocity[body] = {};
+  s.springs.removeAt(body);
+  s.joints.removeAt(body);
+}
+
+int RigidSystem::addSpring(const SpringDef& def) { return state_->springs.add(def, state_->bodies); }
+int RigidSystem::addJoint(const JointDef& def) { return state_->joints.add(def, state_->bodies); }
+void RigidSystem::removeSpring(int spring) { state_->springs.remove(spring); }
+void RigidSystem::removeJoint(int joint) { state_->joints.remove(joint); }
+
+// --- events and scripts
+// ----------------------------------------------------------------------------------------------------------
+
+void RigidSystem::setGravity(Vec2 gravity) { state_->gravity = gravity; }
+
+void RigidSystem::setVelocity(int body, Vec2 velocity) {
+  State& s = *state_;
+  Motion& v = s.bodies.def[body].held ? s.resume[body] : s.bodies.velocity[body];
+  v.x = velocity.x;
+  v.y = velocity.y;
+  s.fresh[body] = 1;
+}
+
+void RigidSystem::setSpin(int body, double spin) {
+  State& s = *state_;
+  (s.bodies.def[body].held ? s.resume[body] : s.bodies.velocity[body]).turn = spin;
+}
+
+void RigidSystem::applyImpulse(int body, Vec2 at, Vec2 impulse) {
+  State& s = *state_;
+  s.bodies.push(body, at - s.bodies.positionNow(body), impulse);
+}
+
+void RigidSystem::hold(int body) {
+  State& s = *state_;
+  s.bodies.def[body].held = true;
+  s.bodies.velocity[body] = {};
+  s.resume[body] = {};
+  s.setInverse(body);
+}
+
+void RigidSystem::release(int body) {
+  State& s = *state_;
+  if (!s.bodies.def[body].held) return;
+  s.bodies.def[body].held = false;
+  s.bodies.velocity[body] = s.resume[body];
+  s.fresh[body] = 1;
+  s.setInverse(body);
+}
+
+void RigidSystem::setSurface(int body, double bounce, double friction) {
+  state_->bodies.def[body].bounce = bounce;
+  state_->bodies.def[body].friction = friction;
+}
+
+void RigidSystem::setDamping(int body, double linear, double angular) {
+  state_->bodies.def[body].linearDamping = linear;
+  state_->bodies.def[body].angularDamping = angular;
+}
+
+void RigidSystem::setGravityScale(int body, double scale) { state_->bodies.def[body].gravityScale = scale; }
+
+void RigidSystem::setMass(int body, double mass, double inertia) {
+  state_->bodies.def[body].mass = mass;
+  state_->bodies.def[body].inertia = inertia;
+  state_->setInverse(body);
+}
+
+void RigidSystem::setSpring(int spring, double length, double stiffness, double damping) {
+  SpringDef& def = state_->springs.def(spring);
+  def.length = length;
+  def.stiffness = stiffness;
+  def.damping = damping;
+}
+
+void RigidSystem::setMotor(int joint, double speed, double limit) {
+  state_->joints.setMotor(joint, speed, limit);
+}
+
+void RigidSystem::moveTo(int body, Vec2 position, double angleRad) {
+  state_->targetPlace[body] = position;
+  state_->targetAngle[body] = angleRad;
+}
+
+void RigidSystem::moveSpringEnd(int spring, Vec2 to) { state_->springs.moveEnd(spring, to); }
+
+// --- what there is now
+// ----------------------------------------------------------------------------------------------------------
+
+namespace {
+constexpr int kWalls = 4;  // the first bodies
+}
+
+int RigidSystem::bodyCount() const { return state_->bodies.count(); }
+bool RigidSystem::isThere(int body) const { return body >= kWalls && state_->bodies.there[body]; }
+const BodyDef& RigidSystem::def(int body) const { return state_->bodies.def[body]; }
+Vec2 RigidSystem::position(int body) const { return state_->bodies.position[body]; }
+double RigidSystem::angleRad(int body) const { return state_->bodies.angleRad[body]; }
+bool RigidSystem::held(int body) const { return state_->bodies.def[body].held; }
+
+// Velocities are kept for the middle of the last sub-step: half of what that one changed brings them to now.
+Vec2 RigidSystem::velocity(int body) const {
+  const State& s = *state_;
+  return s.bodies.velocity[body].linear() + 0.5 * s.gained[body].linear();
+}
+double RigidSystem::spin(int body) const {
+  return state_->bodies.velocity[body].turn + 0.5 * state_->gained[body].turn;
+}
+
+bool RigidSystem::springIsThere(int spring) const { return state_->springs.isThere(spring); }
+const SpringDef& RigidSystem::spring(int spring) const { return state_->springs.def(spring); }
+double RigidSystem::springTension(int spring) const { return state_->springs.tension(spring); }
+bool RigidSystem::jointIsThere(int joint) const { return state_->joints.isThere(joint); }
+const JointDef& RigidSystem::joint(int joint) const { return state_->joints.def(joint); }
+
+Vec2 RigidSystem::anchorPoint(const Anchor& anchor) const {
+  return anchor.body < 0 ? anchor.at : toWorld(state_->bodies.frameNow(anchor.body), anchor.at);
+}
+
+const std::vector<Touch>& RigidSystem::touches() const { return state_->touches; }
+
+RigidTotals RigidSystem::totals() const {
+  const State& s = *state_;
+  RigidTotals totals = s.contactTotals;
+  for (int b = kWalls; b < s.bodies.count(); ++b) {
+    const BodyDef& def = s.bodies.def[b];
+    if (!s.bodies.there[b] || def.mass <= 0) continue;
+    const Vec2 v = velocity(b), x = position(b);
+    const double w = spin(b);
+    totals.momentum = totals.momentum + def.mass * v;
+    totals.angularMomentum += def.mass * cross(x, v) + def.inertia * w;
+    totals.kineticEnergy += 0.5 * (def.mass * dot(v, v) + def.inertia * w * w);
+    totals.potentialEnergy -= def.mass * def.gravityScale * dot(s.gravity, x);
+  }
+  totals.potentialEnergy += s.springs.energy(s.bodies);
+  return totals;
+}
+
+std::vector<int> RigidSystem::takeDeparted() { return std::exchange(state_->gone, {}); }
+
+void RigidSystem::hashInto(Fnv1a& hash) const {
+  const Bodies& bodies = state_->bodies;
+  for (int b = 0; b < bodies.count(); ++b) {
+    hash.update(&bodies.there[b], 1);
+    hash.update(&bodies.position[b], sizeof(Vec2));
+    hash.update(&bodies.angleRad[b], sizeof(double));
+    hash.update(&bodies.velocity[b], sizeof(Motion));
+  }
+}
+
+std::size_t RigidSystem::bytes() const {
+  const State& s = *state_;
+  return s.bodies.def.capacity() * (sizeof(BodyDef) + 6 * sizeof(Motion)) + s.narrow.bytes() + s.blocks.bytes();
+}
+
+}  // namespace smokebox

@@ -1,0 +1,72 @@
+// What a RigidSystem holds, and the stages of its step.
+#pragma once
+#include <vector>
+
+#include "rigid/bodies.h"
+#include "rigid/broad_phase.h"
+#include "rigid/contact_blocks.h"
+#include "rigid/impacts.h"
+#include "rigid/joint_set.h"
+#include "rigid/narrow_phase.h"
+#include "rigid/spring_set.h"
+
+namespace smokebox {
+
+struct RigidSystem::State {
+  State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads);
+
+  // --- the stages of a step, in order
+  void beginStep(double dt);
+  void predict(double h);
+  void bounce(double h);
+  void solveContacts(double h);
+  void move(double h);
+  void endStep(double dt);
+
+  void addWalls();
+  void setInverse(int body);
+  double sweep(double h, bool first);
+  void findCalmShare();
+  void warmStartAll(double h);
+  void collectTouches(const std::vector<Contact>& contacts);
+  void wrap(int body);
+  bool outside(int body) const;
+
+  RigidWalls walls;
+  Vec2 gravity;
+  RigidMethod method;
+  ThreadPool& pool;
+
+  Bodies bodies;
+  std::vector<Motion> resume;      // velocity that a held body goes on with
+  std::vector<char> fresh;         // velocity was set: it belongs to now, not to the middle of a sub-step
+  std::vector<char> departed;      // has been reported
+  std::vector<Vec2> targetPlace;   // of bodies without mass: at the end of the coming step
+  std::vector<double> targetAngle;
+  std::vector<Motion> gained;      // of the velocity in the last sub-step
+  std::vector<Motion> before;      // velocity before it
+  std::vector<Motion> struck;      // what impacts add to a body's way in this sub-step
+  std::vector<Motion> start;       // velocities before the contact solver
+  std::vector<Motion> calmShare;   // what the calm contacts added to them in the last sub-step
+  bool shareKnown = false;
+  bool anyStruck = false;
+  std::vector<Motion> way;         // all of that
+
+  BroadPhase broad;
+  NarrowPhase narrow;
+  ContactBlocks blocks;
+  std::vector<int> uncoloured;     // calm contacts that found no colour: solved one by one
+  std::vector<Contact> spare;      // those
+  std::vector<int> bouncing;       // calm contacts that may bounce
+  std::vector<Contact*> bouncers;
+  Impacts impact;
+  SpringSet springs;
+  JointSet joints;
+
+  std::vector<Touch> touches;
+  RigidTotals contactTotals;       // contacts and overlap of the last step
+  std::vector<int> gone;
+  double dt = 0, timeLeft = 0;
+};
+
+}  // namespace smokebox

@@ -1,0 +1,317 @@
+// The stages of a step of bodies.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "base/errors.h"
+#include "rigid/contact_sweeps.h"
+#include "rigid/system_state.h"
+
+namespace smokebox {
+
+namespace {
+// A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there are
+// fewer than the second number.
+constexpr long kManySweeps = 8000, kTwoSweeps = 30000;
+// Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
+constexpr double kSettled = 1e-3;
+// ... or by this share of what the first sweep changed.
+constexpr double kSettledShare = 1e-3;
+// Of an overlap, in each sub-step.
+constexpr double kSeparateShare = 0.2;
+// Overlapping bodies are moved apart at this speed at most, m/s.
+constexpr double kSeparateSpeed = 4;
+// Approaches slower than what gravity adds in so many sub-steps do not bounce.
+constexpr double kRestingSubSteps = 2;
+constexpr int kWalls = 4;
+}  // namespace
+
+RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads)
+    : walls(bounds), gravity(pull), method(how), pool(threads), broad(bounds) {
+  addWalls();
+}
+
+void RigidSystem::State::addWalls() {
+  const double w = walls.width, hgt = walls.height, thick = std::max({w, hgt, 1.0});
+  const Vec2 sizes[] = {{thick, hgt + 2 * thick}, {thick, hgt + 2 * thick}, {w + 2 * thick, thick},
+                        {w + 2 * thick, thick}};
+  const Vec2 middles[] = {{-0.5 * thick, 0.5 * hgt},
+                          {w + 0.5 * thick, 0.5 * hgt},
+                          {0.5 * w, -0.5 * thick},
+                          {0.5 * w, hgt + 0.5 * thick}};
+  for (int side = 0; side < kWalls; ++side) {
+    BodyDef def;
+    def.shape = std::make_shared<BodyShape>(makeSolidShape({BoxShape{sizes[side]}, {}}, 1));
+    def.position = middles[side];
+    def.bounce = walls.bounce;
+    def.friction = walls.friction;
+    bodies.def.push_back(def);
+    // A wall that runs along itself never leaves: only its velocity counts.
+    Motion v;
+    (side < 2 ? v.y : v.x) = walls.speeds[side];
+    bodies.velocity.push_back(v);
+    bodies.moved.push_back({});
+    bodies.inverse.push_back({});
+    bodies.position.push_back(def.position);
+    bodies.angleRad.push_back(0);
+    bodies.turn.push_back({});
+    bodies.there.push_back(walls.sides[side] == RigidWalls::Kind::closed);
+    resume.push_back({});
+    fresh.push_back(0);
+    departed.push_back(0);
+    targetPlace.push_back(def.position);
+    targetAngle.push_back(0);
+    gained.push_back({});
+  }
+}
+
+void RigidSystem::State::setInverse(int body) {
+  const BodyDef& def = bodies.def[body];
+  bodies.inverse[body] = {};
+  if (def.held || def.mass <= 0) return;
+  bodies.inverse[body] = {1 / def.mass, def.inertia > 0 ? 1 / def.inertia : 0};
+}
+
+void RigidSystem::State::beginStep(double step) {
+  dt = timeLeft = step;
+  const double h = dt / method.subSteps;
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    if (!bodies.there[b]) continue;
+    Motion& v = bodies.velocity[b];
+    if (bodies.def[b].mass <= 0) {
+      const Vec2 by = targetPlace[b] - bodies.position[b];
+      v = {by.x / dt, by.y / dt, (targetAngle[b] - bodies.angleRad[b]) / dt};
+    } else if (fresh[b] && bodies.moves(b)) {
+      const double back = 0.5 * h * bodies.def[b].gravityScale;
+      v.x -= back * gravity.x;
+      v.y -= back * gravity.y;
+      fresh[b] = 0;
+    }
+  }
+  touches.clear();
+  broad.update(bodies, gravity, dt);
+  narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
+  blocks.build(bodies, narrow.calm(), uncoloured);
+  spare.clear();
+  for (const int k : uncoloured) spare.push_back(narrow.calm()[k]);
+  bouncing.clear();
+  for (std::size_t k = 0; k < narrow.calm().size(); ++k)
+    if (narrow.calm()[k].bounce > 0) bouncing.push_back(static_cast<int>(k));
+  springs.beginStep(bodies, dt, method.subSteps);
+  joints.beginStep(bodies, dt, method.subSteps);
+  calmShare.assign(bodies.count(), Motion{});
+  shareKnown = false;
+  struck.assign(bodies.count(), Motion{});
+  way.assign(bodies.count(), Motion{});
+}
+
+void RigidSystem::State::predict(double h) {
+  if (timeLeft < 1.5 * h) before = bodies.velocity;  // the last one
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    if (!bodies.moves(b)) continue;
+    const BodyDef& def = bodies.def[b];
+    Motion& v = bodies.velocity[b];
+    v.x += h * def.gravityScale * gravity.x;
+    v.y += h * def.gravityScale * gravity.y;
+    const double linear = 1 / (1 + h * def.linearDamping), angular = 1 / (1 + h * def.angularDamping);
+    v.x *= linear;
+    v.y *= linear;
+    v.turn *= angular;
+  }
+  narrow.refresh(bodies, broad, h);
+}
+
+void RigidSystem::State::bounce(double h) {
+  if (anyStruck) std::fill(struck.begin(), struck.end(), Motion{});
+  anyStruck = false;
+  bouncers.clear();
+  for (const int k : bouncing)
+    if (!narrow.isDropped(k)) bouncers.push_back(&narrow.calm()[k]);
+  for (Contact& contact : narrow.lively())
+    if (contact.bounce > 0) bouncers.push_back(&contact);
+  if (bouncers.empty()) return;
+  const double least = kRestingSubSteps * h * length(gravity) + 1e-7;
+  impact.run(bodies, bouncers, h, gravity, least, struck);
+  anyStruck = impact.count() > 0;
+}
+
+void RigidSystem::State::warmStartAll(double h) {
+  start = bodies.velocity;
+  if (shareKnown)  // the calm contacts' normals and arms are the same all through the step: so is their sum
+    for (int b = kWalls; b < bodies.count(); ++b) {
+      Motion& v = bodies.velocity[b];
+      v.x += calmShare[b].x;
+      v.y += calmShare[b].y;
+      v.turn += calmShare[b].turn;
+    }
+  else
+    blocks.warmStart(bodies);
+  warmStart(bodies, spare);
+  warmStart(bodies, narrow.lively());
+  springs.warmStart(bodies, h);
+  joints.warmStart(bodies, h);
+}
+
+void RigidSystem::State::findCalmShare() {
+  shareKnown = springs.empty() && joints.empty();
+  if (!shareKnown) return;
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    const Motion &v = bodies.velocity[b], &was = start[b];
+    calmShare[b] = {v.x - was.x, v.y - was.y, v.turn - was.turn};
+  }
+  auto takeOut = [&](const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts)
+      for (int k = 0; k < contact.count; ++k) {
+        const ContactPoint& p = contact.points[k];
+        const Vec2 j = p.impulseN * contact.normal + p.impulseT * perpendicular(contact.normal);
+        auto one = [&](int body, Vec2 arm, double sign) {
+          const InverseMass& m = bodies.inverse[body];
+          calmShare[body].x -= sign * m.mass * j.x;
+          calmShare[body].y -= sign * m.mass * j.y;
+          calmShare[body].turn -= sign * m.inertia * cross(arm, j);
+        };
+        one(contact.a, p.armA, -1);
+        one(contact.b, p.armB, 1);
+      }
+  };
+  takeOut(spare);
+  takeOut(narrow.lively());
+}
+
+double RigidSystem::State::sweep(double h, bool first) {
+  double change = 0;
+  if (!joints.empty()) change = std::max(change, joints.solve(bodies, h));
+  if (!springs.empty()) change = std::max(change, springs.solve(bodies, h));
+  change = std::max(change, blocks.solve(bodies, h, first));
+  change = std::max(change, solve(bodies, spare, h));
+  change = std::max(change, solve(bodies, narrow.lively(), h));
+  return change;
+}
+
+void RigidSystem::State::solveContacts(double h) {
+  warmStartAll(h);
+  const long points = 1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
+  double settled = kSettled * h * length(gravity) + 1e-9;
+  for (int round = 0; round < 3; ++round) {
+    for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
+      const double change = sweep(h, round == 0 && sweeps == 1);
+      if (sweeps == 1) settled = std::max(settled, kSettledShare * change);
+      if (change <= settled) break;
+      if (sweeps * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
+    }
+    for (int b = kWalls; b < bodies.count(); ++b) {
+      const Motion& v = bodies.velocity[b];
+      way[b] = {struck[b].x + h * v.x, struck[b].y + h * v.y, struck[b].turn + h * v.turn};
+    }
+    // Who would stray from the way expected of it has its pairs looked at again, before it moves.
+    if (!narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) break;
+    for (std::size_t k = 0; k < spare.size(); ++k)
+      if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
+    narrow.refresh(bodies, broad, h);
+  }
+  findCalmShare();
+}
+
+void RigidSystem::State::move(double h) {
+  narrow.stopPassing(bodies, broad, way);
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    Motion& m = bodies.moved[b];
+    m.x += way[b].x;
+    m.y += way[b].y;
+    m.turn += way[b].turn;
+  }
+  const double most = kSeparateSpeed * h;
+  blocks.separate(bodies, 0.5 * h * h * length(gravity), kSeparateShare, most);
+  separate(bodies, spare, kSeparateShare, most);
+  separate(bodies, narrow.lively(), kSeparateShare, most);
+  collectTouches(narrow.lively());
+  narrow.advance();
+  timeLeft -= h;
+}
+
+void RigidSystem::State::collectTouches(const std::vector<Contact>& contacts) {
+  for (const Contact& contact : contacts) {
+    if (contact.total <= 0) continue;
+    Touch touch;
+    touch.a = contact.a < kWalls ? -1 : contact.a;
+    touch.b = contact.b < kWalls ? -1 : contact.b;
+    Vec2 point{};
+    for (int k = 0; k < contact.count; ++k)
+      point = point + (1.0 / contact.count) * (bodies.positionNow(contact.a) + contact.points[k].armA);
+    touch.point = point;
+    touch.normal = contact.normal;
+    touch.impulse = contact.total;
+    touch.approach = contact.approach;
+    touches.push_back(touch);
+  }
+}
+
+void RigidSystem::State::endStep(double step) {
+  blocks.readBack(narrow.calm());
+  for (std::size_t k = 0; k < spare.size(); ++k)
+    if (spare[k].count > 0) narrow.calm()[uncoloured[k]] = spare[k];
+
+  contactTotals = {};
+  auto count = [&](const Contact& contact) {
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactPoint& p = contact.points[k];
+      const double gap = p.gap + gapMoved(bodies, contact, p);
+      contactTotals.contacts += p.impulseN > 0 || gap <= 0;
+      contactTotals.overlap = std::max(contactTotals.overlap, -gap);
+    }
+  };
+  for (std::size_t k = 0; k < narrow.calm().size(); ++k)
+    if (!narrow.isDropped(static_cast<int>(k))) count(narrow.calm()[k]);
+  for (const Contact& contact : narrow.lively()) count(contact);
+  collectTouches(narrow.calm());
+  // Touches of one pair within the step become one.
+  std::stable_sort(touches.begin(), touches.end(), [](const Touch& p, const Touch& q) {
+    return p.a < q.a || (p.a == q.a && p.b < q.b);
+  });
+  narrow.endStep(bodies, broad);
+  springs.endStep(bodies);
+  joints.endStep(bodies);
+
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    if (!bodies.there[b]) continue;
+    const Motion &v = bodies.velocity[b], &was = before[b], &m = bodies.moved[b];
+    const bool hit = struck[b].x != 0 || struck[b].y != 0 || struck[b].turn != 0;
+    gained[b] = hit ? Motion{} : Motion{v.x - was.x, v.y - was.y, v.turn - was.turn};
+    if (bodies.def[b].mass <= 0) {
+      bodies.position[b] = targetPlace[b];
+      bodies.angleRad[b] = targetAngle[b];
+      gained[b] = {};
+    } else {
+      bodies.position[b] = bodies.position[b] + m.linear();
+      bodies.angleRad[b] += m.turn;
+    }
+    if (m.turn != 0) bodies.turn[b] = turnBy(bodies.angleRad[b]);
+    bodies.moved[b] = {};
+    if (!std::isfinite(bodies.position[b].x + bodies.position[b].y + bodies.angleRad[b] + v.x + v.y + v.turn))
+      throw SimulationError("the motion of body " + std::to_string(b) + " is not a finite number");
+    wrap(b);
+    if (!departed[b] && outside(b)) {
+      departed[b] = 1;
+      gone.push_back(b);
+    }
+  }
+  (void)step;
+}
+
+void RigidSystem::State::wrap(int body) {
+  if (bodies.def[body].mass <= 0) return;
+  Vec2& x = bodies.position[body];
+  if (walls.sides[0] == RigidWalls::Kind::periodic) x.x -= walls.width * std::floor(x.x / walls.width);
+  if (walls.sides[2] == RigidWalls::Kind::periodic) x.y -= walls.height * std::floor(x.y / walls.height);
+}
+
+bool RigidSystem::State::outside(int body) const {
+  const Vec2 x = bodies.position[body];
+  const double r = bodies.def[body].shape->reach;
+  const auto open = RigidWalls::Kind::open;
+  return (walls.sides[0] == open && x.x < -r) || (walls.sides[1] == open && x.x > walls.width + r) ||
+         (walls.sides[2] == open && x.y < -r) || (walls.sides[3] == open && x.y > walls.height + r);
+}
+
+}  // namespace smokebox
