@@ -24,9 +24,10 @@ inline Turn turnedBy(Turn turn, double angleRad) {
   Turn by;
   if (angleRad < 0.25 && angleRad > -0.25) {
     const double q = angleRad * angleRad;
-    by.s = angleRad *
-           (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156))))));
-    by.c = 1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90 * (1 - q / 132 * (1 - q / 182))))));
+    by.s =
+        angleRad * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156))))));
+    by.c =
+        1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90 * (1 - q / 132 * (1 - q / 182))))));
   } else {
     by = turnBy(angleRad);
   }

@@ -43,8 +43,7 @@ bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt) {
   }
   const Vec2 way = dt * v.linear();
   box = joined(box, shifted(box, way));
-  if (bodies.moves(body))
-    box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
+  if (bodies.moves(body)) box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
   if (listed_[body] && fat_[body].holds(box)) return false;
   fat_[body] = grown(box, kRoom * (bodies.moves(body) ? shape.reach : 0));
   listed_[body] = 1;
@@ -56,7 +55,8 @@ void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& fo
              wrapY = walls_.sides[2] == RigidWalls::Kind::periodic;
   for (int sy = wrapY ? -1 : 0; sy <= (wrapY ? 1 : 0); ++sy)
     for (int sx = wrapX ? -1 : 0; sx <= (wrapX ? 1 : 0); ++sx) {
-      // The other one's image at +shift meets this body where the other one meets this body's image at -shift.
+      // The other one's image at +shift meets this body where the other one meets this body's image at
+      // -shift.
       const Box box = shifted(fat_[body], {-sx * walls_.width, -sy * walls_.height});
       tree_.query(fat_, box, [&](int other) {
         if (other == body || !mayMeet(bodies, body, other)) return;

@@ -21,7 +21,8 @@ struct BodyPair {
   PairKey key;
   // Contacts of the last step: a range of the narrow phase's memory ...
   int first = 0, count = 0;
-  // ... all that are closer than `margin`, found when the bodies had travelled so far; below 0: to be found anew.
+  // ... all that are closer than `margin`, found when the bodies had travelled so far; below 0: to be found
+  // anew.
   double margin = -1, travelled = 0;
 };
 

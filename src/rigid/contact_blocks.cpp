@@ -20,8 +20,10 @@ inline Motions gather(const Motion* from, const int* index) {
   const Lanes r1 = *reinterpret_cast<const Lanes*>(from + index[1]);
   const Lanes r2 = *reinterpret_cast<const Lanes*>(from + index[2]);
   const Lanes r3 = *reinterpret_cast<const Lanes*>(from + index[3]);
-  const Lanes s0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6), s1 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
-  const Lanes t0 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7), t1 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+  const Lanes s0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6),
+              s1 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
+  const Lanes t0 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7),
+              t1 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
   return {__builtin_shufflevector(s0, s1, 0, 1, 4, 5), __builtin_shufflevector(t0, t1, 0, 1, 4, 5),
           __builtin_shufflevector(s0, s1, 2, 3, 6, 7)};
 }
@@ -29,7 +31,8 @@ inline Motions gather(const Motion* from, const int* index) {
 /// Lanes whose bit is not set are left alone: their body does not move, and may be in several lanes.
 inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motions& m) {
   const Lanes zero = {0, 0, 0, 0};
-  const Lanes s0 = __builtin_shufflevector(m.x, m.y, 0, 4, 1, 5), s1 = __builtin_shufflevector(m.x, m.y, 2, 6, 3, 7);
+  const Lanes s0 = __builtin_shufflevector(m.x, m.y, 0, 4, 1, 5),
+              s1 = __builtin_shufflevector(m.x, m.y, 2, 6, 3, 7);
   const Lanes t0 = __builtin_shufflevector(m.turn, zero, 0, 4, 1, 5),
               t1 = __builtin_shufflevector(m.turn, zero, 2, 6, 3, 7);
   if (bits & 1) *reinterpret_cast<Lanes*>(to + index[0]) = __builtin_shufflevector(s0, t0, 0, 1, 4, 5);
@@ -43,7 +46,8 @@ inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 
 }  // namespace
 
-void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest) {
+void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& contacts,
+                          std::vector<int>& rest) {
   const int count = static_cast<int>(contacts.size());
   used_.assign(bodies.count(), 0);
   colour_.resize(count);
@@ -54,7 +58,8 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
   for (const bool bearing : {true, false})
     for (int k = 0; k < count; ++k) {
       const Contact& c = contacts[k];
-      const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0 || c.points[0].gap < 1e-3 || c.points[1].gap<1e-3;
+      const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0 || c.points[0].gap < 1e-3 ||
+                         c.points[1].gap < 1e-3;
       if (bears != bearing) continue;
       const bool movesA = bodies.moves(c.a), movesB = bodies.moves(c.b);
       const std::uint64_t used = (movesA ? used_[c.a] : 0) | (movesB ? used_[c.b] : 0);
@@ -196,8 +201,8 @@ void ContactBlocks::separate(Bodies& bodies, double slop, double share, double m
     Motions da = gather(moved, block.a), db = gather(moved, block.b);
     bool any = false;
     for (const Point& p : block.points) {
-      const Lanes gap = p.gap + block.nx * (db.x - da.x) + block.ny * (db.y - da.y) + db.turn * p.armBN -
-                        da.turn * p.armAN;
+      const Lanes gap =
+          p.gap + block.nx * (db.x - da.x) + block.ny * (db.y - da.y) + db.turn * p.armBN - da.turn * p.armAN;
       const Lanes overlap = smaller(larger(-share * gap, Lanes{}), cap) * p.massN;
       if (!(overlap[0] > 0 || overlap[1] > 0 || overlap[2] > 0 || overlap[3] > 0)) continue;
       any = true;

@@ -24,10 +24,11 @@ class ContactBlocks {
 
   /// Adds the impulses to the velocities.
   void warmStart(Bodies& bodies) const;
-  /// One sweep (the first of a sub-step or a further one). Gives the largest change of a relative velocity, m/s.
+  /// One sweep (the first of a sub-step or a further one). Gives the largest change of a relative velocity,
+  /// m/s.
   double solve(Bodies& bodies, double h, bool first);
-  /// Moves bodies apart that overlapped by more than `slop` in the last first sweep: a share of the overlap, at
-  /// most `most` metres.
+  /// Moves bodies apart that overlapped by more than `slop` in the last first sweep: a share of the overlap,
+  /// at most `most` metres.
   void separate(Bodies& bodies, double slop, double share, double most) const;
   /// Takes contact `index` out for the rest of the step; `contact` gets its impulses.
   void drop(int index, Contact& contact);
@@ -44,9 +45,9 @@ class ContactBlocks {
   };
   struct alignas(64) Block {
     int a[kLanes], b[kLanes];
-    int contact[kLanes];             // -1: empty lane
-    std::uint8_t storeA, storeB;     // bits: the lane's body moves
-    double deepest;                  // smallest gap in the last first sweep
+    int contact[kLanes];          // -1: empty lane
+    std::uint8_t storeA, storeB;  // bits: the lane's body moves
+    double deepest;               // smallest gap in the last first sweep
     Lanes nx, ny, friction;
     Lanes inverseA, inertiaA, inverseB, inertiaB;
     Point points[2];

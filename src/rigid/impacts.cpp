@@ -22,9 +22,9 @@ Impacts::Approach Impacts::approach(const Bodies& bodies, const std::vector<Moti
                                     const Contact& contact, const ContactPoint& point, double h,
                                     double now) const {
   const Motion &wa = way[contact.a], &wb = way[contact.b];
-  const double gap = point.gap + gapMoved(bodies, contact, point) +
-                     dot(contact.normal, wb.linear() - wa.linear()) +
-                     wb.turn * cross(point.armB, contact.normal) - wa.turn * cross(point.armA, contact.normal);
+  const double gap =
+      point.gap + gapMoved(bodies, contact, point) + dot(contact.normal, wb.linear() - wa.linear()) +
+      wb.turn * cross(point.armB, contact.normal) - wa.turn * cross(point.armA, contact.normal);
   const double a = dot(acceleration(bodies, contact), contact.normal);
   const double v = partingSpeed(bodies, contact, point) - 0.5 * a * h;  // at the sub-step's start
   double t = now;
@@ -131,7 +131,8 @@ void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   if (contact.friction == 0) return;
   // After the normal impulses: friction at most stops the sliding, so it can only take energy.
   for (int k = 0; k < count; ++k) {
-    const Vec2 slip = bodies.velocityAt(contact.b, struck[k].armB) - bodies.velocityAt(contact.a, struck[k].armA);
+    const Vec2 slip =
+        bodies.velocityAt(contact.b, struck[k].armB) - bodies.velocityAt(contact.a, struck[k].armA);
     const double most = contact.friction * normal[k];
     const double stop = -dot(tangent, slip) / response(struck[k], tangent, struck[k], tangent);
     push(bodies, contact, struck[k].armA, struck[k].armB, std::clamp(stop, -most, most) * tangent, now, way);

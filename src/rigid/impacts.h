@@ -1,8 +1,8 @@
 // Impacts within a sub-step, one after the other at their own moments: Newton's restitution on the true speed
 // of approach, then Coulomb's friction.
 //
-// With a leapfrog velocity v (of the middle of the sub-step) and the bodies' relative acceleration a of gravity
-// along the normal, the gap is g + (v - a h/2) t + a t^2/2 and the speed of approach at its root t is
+// With a leapfrog velocity v (of the middle of the sub-step) and the bodies' relative acceleration a of
+// gravity along the normal, the gap is g + (v - a h/2) t + a t^2/2 and the speed of approach at its root t is
 // w = v + a (t - h/2). The impulse changes v by -(1 + e) w, and the body's way by -t times the change of its
 // velocity: so flight, bounce and flight again are exact, whenever within the sub-step the bounce falls.
 // Impulses go on (body to body to body: a cradle) until nothing approaches, up to a bound; each one takes

@@ -31,7 +31,8 @@ constexpr double kTarget = 1e-3;
 /// How far from the centre of mass a turn moves anything: nothing of a disk that turns about its centre.
 double turningReach(const BodyShape& shape) {
   const ConvexPiece& first = shape.pieces[0];
-  return shape.pieces.size() == 1 && first.points.size() == 1 && first.points[0] == Vec2{0, 0} ? 0 : shape.reach;
+  return shape.pieces.size() == 1 && first.points.size() == 1 && first.points[0] == Vec2{0, 0} ? 0
+                                                                                               : shape.reach;
 }
 
 /// Largest speed of any point of one against any of the other.
@@ -144,8 +145,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   for (int b = 0; b < count; ++b) {
     if (!bodies.there[b]) continue;
     const double fall = length(gravity) * std::abs(bodies.def[b].gravityScale) * dt * dt;
-    expected_[b] = {bodies.velocity[b],
-                    bodies.moves(b) ? fall + kStray * bodies.def[b].shape->thinnest : 0};
+    expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * bodies.def[b].shape->thinnest : 0};
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
@@ -181,8 +181,8 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     pair.margin = margin + 2 * kReuse * thin;
     pair.travelled = travelled_[a] + travelled_[b];
     if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), pair.margin)) continue;
-    find(bodies, pair.key, broad.shiftOf(pair.key), pair.margin, h_, false, memory_.data() + pair.first, pair.count,
-         calm_);
+    find(bodies, pair.key, broad.shiftOf(pair.key), pair.margin, h_, false, memory_.data() + pair.first,
+         pair.count, calm_);
   }
   calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
   for (Contact& contact : calm_) contact.total = 0;

@@ -211,7 +211,8 @@ void RigidSystem::hashInto(Fnv1a& hash) const {
 
 std::size_t RigidSystem::bytes() const {
   const State& s = *state_;
-  return s.bodies.def.capacity() * (sizeof(BodyDef) + 6 * sizeof(Motion)) + s.narrow.bytes() + s.blocks.bytes();
+  return s.bodies.def.capacity() * (sizeof(BodyDef) + 6 * sizeof(Motion)) + s.narrow.bytes() +
+         s.blocks.bytes();
 }
 
 }  // namespace smokebox

@@ -38,33 +38,33 @@ struct RigidSystem::State {
   ThreadPool& pool;
 
   Bodies bodies;
-  std::vector<Motion> resume;      // velocity that a held body goes on with
-  std::vector<char> fresh;         // velocity was set: it belongs to now, not to the middle of a sub-step
-  std::vector<char> departed;      // has been reported
-  std::vector<Vec2> targetPlace;   // of bodies without mass: at the end of the coming step
+  std::vector<Motion> resume;     // velocity that a held body goes on with
+  std::vector<char> fresh;        // velocity was set: it belongs to now, not to the middle of a sub-step
+  std::vector<char> departed;     // has been reported
+  std::vector<Vec2> targetPlace;  // of bodies without mass: at the end of the coming step
   std::vector<double> targetAngle;
-  std::vector<Motion> gained;      // of the velocity in the last sub-step
-  std::vector<Motion> before;      // velocity before it
-  std::vector<Motion> struck;      // what impacts add to a body's way in this sub-step
-  std::vector<Motion> start;       // velocities before the contact solver
-  std::vector<Motion> calmShare;   // what the calm contacts added to them in the last sub-step
+  std::vector<Motion> gained;     // of the velocity in the last sub-step
+  std::vector<Motion> before;     // velocity before it
+  std::vector<Motion> struck;     // what impacts add to a body's way in this sub-step
+  std::vector<Motion> start;      // velocities before the contact solver
+  std::vector<Motion> calmShare;  // what the calm contacts added to them in the last sub-step
   bool shareKnown = false;
   bool anyStruck = false;
-  std::vector<Motion> way;         // all of that
+  std::vector<Motion> way;  // all of that
 
   BroadPhase broad;
   NarrowPhase narrow;
   ContactBlocks blocks;
-  std::vector<int> uncoloured;     // calm contacts that found no colour: solved one by one
-  std::vector<Contact> spare;      // those
-  std::vector<int> bouncing;       // calm contacts that may bounce
+  std::vector<int> uncoloured;  // calm contacts that found no colour: solved one by one
+  std::vector<Contact> spare;   // those
+  std::vector<int> bouncing;    // calm contacts that may bounce
   std::vector<Contact*> bouncers;
   Impacts impact;
   SpringSet springs;
   JointSet joints;
 
   std::vector<Touch> touches;
-  RigidTotals contactTotals;       // contacts and overlap of the last step
+  RigidTotals contactTotals;  // contacts and overlap of the last step
   std::vector<int> gone;
   double dt = 0, timeLeft = 0;
 };

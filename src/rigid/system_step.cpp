@@ -11,8 +11,8 @@
 namespace smokebox {
 
 namespace {
-// A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there are
-// fewer than the second number.
+// A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
+// are fewer than the second number.
 constexpr long kManySweeps = 8000, kTwoSweeps = 30000;
 // Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
 constexpr double kSettled = 1e-3;
@@ -34,8 +34,8 @@ RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod
 
 void RigidSystem::State::addWalls() {
   const double w = walls.width, hgt = walls.height, thick = std::max({w, hgt, 1.0});
-  const Vec2 sizes[] = {{thick, hgt + 2 * thick}, {thick, hgt + 2 * thick}, {w + 2 * thick, thick},
-                        {w + 2 * thick, thick}};
+  const Vec2 sizes[] = {
+      {thick, hgt + 2 * thick}, {thick, hgt + 2 * thick}, {w + 2 * thick, thick}, {w + 2 * thick, thick}};
   const Vec2 middles[] = {{-0.5 * thick, 0.5 * hgt},
                           {w + 0.5 * thick, 0.5 * hgt},
                           {0.5 * w, -0.5 * thick},
@@ -191,7 +191,8 @@ double RigidSystem::State::sweep(double h, bool first) {
 
 void RigidSystem::State::solveContacts(double h) {
   warmStartAll(h);
-  const long points = 1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
+  const long points =
+      1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
   double settled = kSettled * h * length(gravity) + 1e-9;
   for (int round = 0; round < 3; ++round) {
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
@@ -266,9 +267,8 @@ void RigidSystem::State::endStep(double step) {
   for (const Contact& contact : narrow.lively()) count(contact);
   collectTouches(narrow.calm());
   // Touches of one pair within the step become one.
-  std::stable_sort(touches.begin(), touches.end(), [](const Touch& p, const Touch& q) {
-    return p.a < q.a || (p.a == q.a && p.b < q.b);
-  });
+  std::stable_sort(touches.begin(), touches.end(),
+                   [](const Touch& p, const Touch& q) { return p.a < q.a || (p.a == q.a && p.b < q.b); });
   narrow.endStep(bodies, broad);
   springs.endStep(bodies);
   joints.endStep(bodies);
