@@ -149,10 +149,23 @@ void chooseOutline(const Side& side, const Frame& referenceInOther, double margi
   }
 }
 
-bool containsPoint(const ConvexPiece& piece, Vec2 own) {
-  for (std::size_t k = 0; k < piece.normals.size(); ++k)
-    if (dot(piece.normals[k], own - piece.points[k]) > 0) return false;
-  return true;
+/// The nearest edge of the reference's outline, whatever it meets: one point, where the other is deepest
+/// behind it.
+void nearestOutline(const Side& side, OutlineChoice& choice) {
+  const ConvexPiece &p = side.reference, &q = side.other;
+  for (std::size_t k = 0; k < p.normals.size(); ++k) {
+    if (p.inner[k]) continue;
+    const Vec2 normal = p.normals[k];
+    const int corner = support(q, -inverseRotate(side.otherInReference.turn, normal));
+    const Vec2 at = toWorld(side.otherInReference, q.points[corner]);
+    const double separation = dot(normal, at - p.points[k]);
+    if (separation <= choice.fallbackSeparation) continue;
+    choice.fallbackSeparation = separation;
+    choice.fallback.count = 0;
+    addPoint(side, at, separation, normal, featureOf(side, static_cast<int>(k), corner, false),
+             choice.fallback);
+    setNormal(side, normal, choice.fallback);
+  }
 }
 
 /// `separation`: the largest of all edges, those inside the bodies too.
@@ -161,20 +174,21 @@ bool collideOutlines(const Side& ab, const Side& ba, double separation, double m
   chooseOutline(ab, ba.otherInReference, margin, choice);
   chooseOutline(ba, ab.otherInReference, margin, choice);
   // An overlap that is far deeper than that of the two pieces goes through a neighbouring piece, which has it
-  // too.
-  constexpr double kFar = 10;
-  if (choice.manifold.count > 0 && choice.separation >= std::min(0.0, kFar * separation)) {
+  // too; unless this one is swallowed.
+  constexpr double kFar = 10, kSwallowed = 0.2;
+  const bool found = choice.manifold.count > 0;
+  const bool swallowed = separation < -kSwallowed * std::min(ab.reference.reach, ba.reference.reach);
+  if (found && (swallowed || choice.separation >= std::min(0.0, kFar * separation))) {
     manifold = choice.manifold;
     return true;
   }
-  // Swallowed: out by the nearest side.
-  const bool swallowed = containsPoint(ab.reference, toWorld(ab.otherInReference, ab.other.centre)) ||
-                         containsPoint(ba.reference, toWorld(ba.otherInReference, ba.other.centre));
   if (!swallowed) return false;
-  const bool crossed = choice.manifold.count > 0;
-  if (!crossed && choice.fallback.count == 0) return false;
-  manifold = crossed ? choice.manifold : choice.fallback;
-  return true;
+  if (choice.fallback.count == 0) {
+    nearestOutline(ab, choice);
+    nearestOutline(ba, choice);
+  }
+  manifold = choice.fallback;
+  return manifold.count > 0;
 }
 
 /// A disk (the other) against edges.
