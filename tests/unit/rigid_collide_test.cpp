@@ -76,6 +76,20 @@ TEST(RigidCollide, RoundPiecesAreExact) {
   EXPECT_FALSE(collide(capsule, {{0, 0}, {}}, capsule, {{2.7, 0}, {}}, 0.1, m));
 }
 
+TEST(RigidCollide, CrossingCapsulesOverlap) {
+  // Long thin capsules that cross far from their ends, or close to two of them, overlap by at least their
+  // radii.
+  const ConvexPiece capsule = makePiece({{-1, 0}, {1, 0}}, 0.01);
+  for (double turn : {0.01, 0.1, 1.0, 1.5, 3.0})
+    for (double at : {0.0, 0.5, 0.99}) {
+      const Turn q = turnBy(turn);
+      const Frame crossing{Vec2{at, 0} - rotate(q, {at, 0}), q};  // both pass through (at, 0)
+      Manifold m;
+      ASSERT_TRUE(collide(capsule, {}, capsule, crossing, 1e-3, m)) << turn << " " << at;
+      EXPECT_LT(smallestGap(m), -0.02 + 1e-9) << turn << " " << at;
+    }
+}
+
 TEST(RigidCollide, RandomPairsHaveTheTrueGapAndNormal) {
   // The smallest gap is the true distance, or the least overlap of all edges' normals, and moving B along the
   // normal by the gap's negative makes them touch.
@@ -83,10 +97,13 @@ TEST(RigidCollide, RandomPairsHaveTheTrueGapAndNormal) {
   int apart = 0, overlapping = 0, none = 0;
   for (int trial = 0; trial < 40000; ++trial) {
     const int na = 1 + dice.below(9), nb = 1 + dice.below(trial % 50 == 0 ? 40 : 9);
-    const ConvexPiece a = randomPiece(dice, na, na < 3 || dice.below(2) ? dice.between(0.01, 0.3) : 0);
-    const ConvexPiece b = randomPiece(dice, nb, nb < 3 || dice.below(2) ? dice.between(0.01, 0.3) : 0);
+    const ConvexPiece a =
+        randomPiece(dice, na, na < 3 || dice.below(2) ? dice.between(0.001, 0.3) * dice.between(0, 1) : 0);
+    const ConvexPiece b =
+        randomPiece(dice, nb, nb < 3 || dice.below(2) ? dice.between(0.001, 0.3) * dice.between(0, 1) : 0);
     const Frame fa = dice.frame(1.5), fb = dice.frame(1.5);
-    const double margin = dice.between(0, 1), cores = slowDistance(a, fa, b, fb), radii = a.radius + b.radius;
+    const double wide = dice.between(0, 1), margin = wide * wide * wide, cores = slowDistance(a, fa, b, fb),
+                 radii = a.radius + b.radius;
     Manifold m;
     const bool touching = collide(a, fa, b, fb, margin, m);
     ASSERT_EQ(touching, cores - radii <= margin) << trial;
@@ -104,7 +121,7 @@ TEST(RigidCollide, RandomPairsHaveTheTrueGapAndNormal) {
       ASSERT_NEAR(smallestGap(m), overlap - radii, 1e-3) << trial;  // A's face is preferred a little
     }
   }
-  EXPECT_GT(apart, 5000);
+  EXPECT_GT(apart, 4000);
   EXPECT_GT(overlapping, 5000);
   EXPECT_GT(none, 5000);
 }
@@ -124,6 +141,34 @@ TEST(RigidCollide, SwappedPairsGiveTheSameContact) {
     ++compared;
     ASSERT_EQ(m.count, swapped.count);
     ASSERT_NEAR(smallestGap(m), smallestGap(swapped), 1e-9);
+  }
+  EXPECT_GT(compared, 8000);
+}
+
+TEST(RigidCollide, MirroredPairsGiveTheMirroredContact) {
+  // The mirror image of two pieces touches in the mirror image of their contact.
+  Dice dice(10);
+  const auto mirrored = [](const ConvexPiece& piece) {
+    std::vector<Vec2> points;
+    for (auto p = piece.points.rbegin(); p != piece.points.rend(); ++p) points.push_back({-p->x, p->y});
+    return makePiece(points, piece.radius);
+  };
+  const auto image = [](const Frame& f) {
+    return Frame{{-f.position.x, f.position.y}, {f.turn.c, -f.turn.s}};
+  };
+  int compared = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const ConvexPiece a = randomPiece(dice, 1 + dice.below(8), 0.1),
+                      b = randomPiece(dice, 1 + dice.below(8), 0.05);
+    const Frame fa = dice.frame(1), fb = dice.frame(1);
+    Manifold m, other;
+    const bool touching = collide(a, fa, b, fb, 0.3, m);
+    ASSERT_EQ(collide(mirrored(a), image(fa), mirrored(b), image(fb), 0.3, other), touching);
+    if (!touching) continue;
+    ++compared;
+    ASSERT_EQ(m.count, other.count) << trial;
+    ASSERT_NEAR(length(m.normal - Vec2{-other.normal.x, other.normal.y}), 0, 1e-6);
+    ASSERT_NEAR(smallestGap(m), smallestGap(other), 1e-9);
   }
   EXPECT_GT(compared, 8000);
 }

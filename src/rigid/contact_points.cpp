@@ -1,0 +1,105 @@
+#include "rigid/contact_points.h"
+
+#include <algorithm>
+
+namespace smokebox::convex {
+
+std::uint32_t featureOf(const Side& side, int onReference, int onOther, bool cornerOfReference) {
+  const int onA = side.flipped ? onOther : onReference, onB = side.flipped ? onReference : onOther;
+  const std::uint32_t cornerOfA = cornerOfReference != side.flipped ? 1 : 0;
+  return cornerOfA << 31 | (static_cast<std::uint32_t>(onA) & 0x7fff) << 16 |
+         (static_cast<std::uint32_t>(onB) & 0xffff);
+}
+
+void addPoint(const Side& side, Vec2 point, double apart, Vec2 normal, std::uint32_t feature,
+              Manifold& manifold) {
+  const double a = side.reference.radius, b = side.other.radius;
+  ManifoldPoint& added = manifold.points[manifold.count++];
+  added.gap = apart - a - b;
+  added.point = toWorld(side.frame, point + (0.5 * (a - b - apart)) * normal);
+  added.feature = feature;
+}
+
+void setNormal(const Side& side, Vec2 normal, Manifold& manifold) {
+  const Vec2 world = rotate(side.frame.turn, normal);
+  manifold.normal = side.flipped ? -world : world;
+}
+
+void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::uint32_t feature,
+                 Manifold& manifold) {
+  const Vec2 normal = (1 / apart) * (point - nearest);
+  manifold.count = 0;
+  addPoint(side, point, apart, normal, feature, manifold);
+  setNormal(side, normal, manifold);
+}
+
+namespace {
+
+/// Edge `incident` of the other piece clipped to edge `k` of the reference; points farther than `margin` are
+/// left out.
+bool clipToFace(const Side& side, int k, int incident, double margin, Manifold& manifold) {
+  const ConvexPiece &p = side.reference, &q = side.other;
+  const Vec2 normal = p.normals[k], along = perpendicular(normal), from = p.points[k];
+  const double size = dot(along, p.points[next(p, k)] - from);
+  const int ends[2] = {incident, next(q, incident)};
+  Vec2 at[2];
+  double x[2];
+  for (int e = 0; e < 2; ++e) {
+    at[e] = toWorld(side.otherInReference, q.points[ends[e]]);
+    x[e] = dot(along, at[e] - from);
+  }
+  manifold.count = 0;
+  const double slack = 1e-9 * (p.reach + q.reach);
+  if (std::max(x[0], x[1]) < -slack || std::min(x[0], x[1]) > size + slack) return false;
+  const double reach = margin + p.radius + q.radius;
+  for (int e = 0; e < 2; ++e) {
+    Vec2 point = at[e];
+    std::uint32_t feature = featureOf(side, k, ends[e], false);
+    if (x[e] < -slack || x[e] > size + slack) {
+      const double share = std::clamp(((x[e] < 0 ? 0 : size) - x[e]) / (x[1 - e] - x[e]), 0.0, 1.0);
+      point = at[e] + share * (at[1 - e] - at[e]);
+      feature = featureOf(side, x[e] < 0 ? k : next(p, k), incident, true);
+    }
+    const double apart = dot(normal, point - from);
+    if (apart <= reach) addPoint(side, point, apart, normal, feature, manifold);
+  }
+  setNormal(side, normal, manifold);
+  return manifold.count > 0;
+}
+
+/// Corner `corner` of the other piece alone against edge `k` of the reference.
+bool cornerOnFace(const Side& side, int k, int corner, double margin, Manifold& manifold) {
+  const ConvexPiece& p = side.reference;
+  const Vec2 normal = p.normals[k], at = toWorld(side.otherInReference, side.other.points[corner]);
+  const Vec2 from = p.points[k], to = p.points[next(p, k)];
+  const double apart = dot(normal, at - from);
+  if (dot(at - from, to - from) < 0 || dot(at - to, to - from) > 0) return false;
+  if (apart > margin + p.radius + side.other.radius) return false;
+  manifold.count = 0;
+  addPoint(side, at, apart, normal, featureOf(side, k, corner, false), manifold);
+  setNormal(side, normal, manifold);
+  return true;
+}
+
+}  // namespace
+
+bool faceOnOutline(const Side& side, int k, int supported, double margin, Manifold& manifold) {
+  const ConvexPiece& q = side.other;
+  const Vec2 facing = -inverseRotate(side.otherInReference.turn, side.reference.normals[k]);
+  if (q.whole) return clipToFace(side, k, edgeFacing(q, supported, facing), margin, manifold);
+  constexpr double kAgainst = 0.9;
+  const bool touchable = inCone(q, supported, facing);
+  const int edges[2] = {supported, previous(q, supported)};
+  int best = -1;
+  double most = touchable ? 0 : kAgainst;
+  for (int edge : edges) {
+    const double towards = dot(q.normals[edge], facing);
+    if (q.inner[edge] || !(towards > most)) continue;
+    most = towards;
+    best = edge;
+  }
+  if (best >= 0) return clipToFace(side, k, best, margin, manifold);
+  return touchable && cornerOnFace(side, k, supported, margin, manifold);
+}
+
+}  // namespace smokebox::convex
