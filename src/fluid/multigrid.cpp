@@ -10,8 +10,9 @@ using multigrid::Level;
 
 namespace {
 
-constexpr int kFullSweeps = 2;  // one red, one black
-constexpr int kBandPairs = 2;   // red-black pairs along solids, beyond those
+constexpr int kFullSweeps = 2;          // one red, one black
+constexpr int kBandPairs = 2;           // red-black pairs along solids, beyond those
+constexpr std::size_t kFirstTwice = 3;  // the finest level of those that are visited twice
 constexpr int kSweeps = kFullSweeps + 2 * kBandPairs;
 
 /// Sweep s of row j on the way down.
@@ -98,6 +99,8 @@ void Multigrid::rebuild(const Boundary& boundary) {
   shape(boundary);
   builder_.finest(boundary, levels_.front());
   for (std::size_t l = 1; l < levels_.size(); ++l) builder_.coarsen(levels_[l - 1], levels_[l]);
+  for (std::size_t l = kFirstTwice; l < levels_.size(); ++l)
+    for (multigrid::Floats* kept : {&levels_[l].onceX, &levels_[l].onceB}) kept->resize(levels_[l].x.size());
   listSealed();
 }
 
@@ -219,15 +222,40 @@ void Multigrid::ascend(std::size_t l) {
   });
 }
 
-double Multigrid::cycle() {
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    if (l == balanced_) balance(levels_[l].b);
-    descend(l);
+void Multigrid::keepResidual(Level& level) {
+  level.onceB = level.b;
+  level.onceX = level.x;
+  rows(level, 0, level.ny, [&](int j) {
+    residualOfRow(level, j);
+    std::copy_n(level.residualRow(j), level.nx, level.row(level.b, j));
+    for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 2]; ++s) {
+      const int extra = level.specialAt[s] - static_cast<int>(level.extrasBegin);
+      if (extra >= 0) level.b[level.specialAt[s]] = level.residualExtra[extra];
+    }
+  });
+}
+
+void Multigrid::addToKept(Level& level) {
+  for (std::size_t k = 0; k < level.x.size(); ++k) level.x[k] += level.onceX[k];
+  level.b.swap(level.onceB);
+}
+
+void Multigrid::visit(std::size_t l, bool twice) {
+  if (l == balanced_) balance(levels_[l].b);
+  descend(l);
+  if (l + 1 == levels_.size()) return;
+  visit(l + 1, twice);
+  if (twice && l + 1 >= kFirstTwice && l + 2 < levels_.size()) {
+    keepResidual(levels_[l + 1]);
+    visit(l + 1, twice);
+    addToKept(levels_[l + 1]);
   }
-  for (std::size_t l = levels_.size() - 1; l-- > 0;) {
-    ascend(l);
-    if (l == balanced_ && l > 0) balance(levels_[l].x);
-  }
+  ascend(l);
+  if (l == balanced_ && l > 0) balance(levels_[l].x);
+}
+
+double Multigrid::cycle(bool twice) {
+  visit(0, twice);
   double sum = 0;
   for (double s : rowSums_) sum += s;
   return sum;

@@ -2,6 +2,10 @@
 //
 //   sum over the faces of a cell of  open (x(cell) - x(neighbour)) = b(cell),   x = 0 beyond an open side
 //
+// A V-cycle, or for far starts a W-cycle. Links of coarse levels are at least half of what the fine ones they
+// stand for add up to: a coarse correction so goes less than twice too far, and a second one stays positive,
+// if all levels below are visited twice, too.
+//
 // Red-black Gauss-Seidel (mirrored after the coarse correction), more sweeps in a band along solids (McAdams
 // 2010), piecewise constant transfer, coarse cells split along solids (Dick, Rogowsky and Westermann 2016),
 // coarsened down to one block. Cells without an open face, and regions without an open side at the coarsest
@@ -35,8 +39,10 @@ class Multigrid {
   multigrid::Level& finest() { return levels_.front(); }
   const multigrid::Level& finest() const { return levels_.front(); }
 
-  /// x = M b by one cycle; returns the sum of x b.
-  double cycle();
+  /// x = M b by one cycle; returns the sum of x b. `twice`: visits each level from the third coarser one on
+  /// twice as often as the one above it (a W-cycle): conjugate gradients then take as many iterations on any
+  /// grid, a fifth fewer of them, for up to a third more time each.
+  double cycle(bool twice = false);
 
   std::size_t bytes() const;
 
@@ -44,6 +50,11 @@ class Multigrid {
   void shape(const Boundary& boundary);
   void listSealed();
   void balance(multigrid::Floats& values) const;
+  void visit(std::size_t l, bool twice);
+  /// Puts x and b of a level by, and its residual in the place of b.
+  void keepResidual(multigrid::Level& level);
+  /// Adds to x what was put by, and takes b back.
+  void addToKept(multigrid::Level& level);
   void descend(std::size_t l);
   void ascend(std::size_t l);
   /// Large enough to be spread over several threads.

@@ -54,7 +54,8 @@ std::size_t Level::bytes() const {
          bytesOf(bandRuns) + bytesOf(extraBase) + bytesOf(extraCell) + bytesOf(specialBegin) +
          bytesOf(specialAt) + bytesOf(specialCell) + bytesOf(specialInverse) + bytesOf(specialValue) +
          bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) + bytesOf(prolongBegin) + bytesOf(prolong) +
-         bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) + bytesOf(residual) + bytesOf(residualExtra);
+         bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) + bytesOf(residual) + bytesOf(residualExtra) +
+         bytesOf(onceX) + bytesOf(onceB);
 }
 
 }  // namespace smokebox::multigrid

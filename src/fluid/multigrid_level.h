@@ -52,9 +52,9 @@ struct Level {
   // ---- shape
   int nx = 0, ny = 0;
   bool periodicX = false, periodicY = false;
-  int chunks = 0;                         // in a row
-  // The colours are mirrored about the middle of an even number of columns, so that a mirrored problem has the
-  // mirrored solution: from this column on, or from beyond the last.
+  int chunks = 0;  // in a row
+  // The colours are mirrored about the middle of an even number of columns, so that a mirrored problem has
+  // the mirrored solution: from this column on, or from beyond the last.
   int swapsAt = 0;
   double unit = 1;                        // edge of a whole block, in cells of the finest grid
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
@@ -113,6 +113,8 @@ struct Level {
   };
   std::vector<Split> split;
   std::vector<int> child;  // 2 i + (j & 1) of a primary unknown, ~k of the extra unknown k
+
+  Floats onceX, onceB;  // put by between the first and the second visit of a W-cycle
 
   // ---- residual: whole rows; two of them are enough where the sweeps are fused
   Floats residual;

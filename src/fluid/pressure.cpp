@@ -25,8 +25,12 @@ namespace {
 
 // The solve aims this much below the tolerance, since the velocity is rounded after it.
 constexpr double kSafety = 0.7;
-// In float32 the running residual parts from the true one: it is computed anew after a fall by this factor.
-constexpr double kTrusted = 1e-4;
+// In float32 the running residual parts from the true one by this share of what it was, for each cell along a
+// side: the solution is larger than its differences by as much.
+constexpr double kRounding = 1.2e-7;
+// From a start this far above the target a W-cycle saves iterations. A step of a flow starts nearer: there it
+// saves none.
+constexpr double kFar = 1e4;
 
 double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
@@ -56,8 +60,15 @@ struct PressureSolver::Impl {
   Source source(const Boundary& boundary, const Field& u, const Field& v);
 
   /// Conjugate gradients for the right-hand side in b, until the largest residual is at most `target`; the
-  /// solution is left in `solution`. Returns the number of iterations.
-  int solve(double start, double target, int maxIterations);
+  /// solution is left in `solution`. Returns the number of iterations. `onward`: b is what the last solve has
+  /// left, computed anew; goes on in conjugate directions instead of starting over, which would cost an
+  /// iteration or two (residual replacement, van der Vorst and Ye 2000).
+  int solve(double start, double target, int maxIterations, bool onward = false);
+  /// Products of the last direction with A correction and with the residual.
+  struct Overlap {
+    double withCorrection = 0, withResidual = 0;
+  };
+  Overlap overlapOfDirection();
   /// direction = x + beta direction; returns its product with A direction.
   double advanceDirection(float beta);
   /// solution += alpha direction (from 0 if it is the first), b -= alpha A direction (computed again: cheaper
@@ -75,10 +86,13 @@ struct PressureSolver::Impl {
   Regions regions;
   PressureFlux flux;
   Floats solution, direction;  // on the finest level's grid
+  double curvature = 0;        // product of the last direction with A direction
+  bool far = false;            // the solve started far from its target
   // What the last projection of a step has found in all: the start of the next one, unless the links change.
   Floats increment;
   bool predictable = false;
   std::vector<double> rows, sums;
+  std::vector<Overlap> overlaps;
 };
 
 PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& boundary, const Field& u,
@@ -221,18 +235,50 @@ void PressureSolver::Impl::add(const Floats& values, Field& phi, float gain) {
   });
 }
 
-int PressureSolver::Impl::solve(double start, double target, int maxIterations) {
-  const double enough = std::max(target, start * kTrusted);
+PressureSolver::Impl::Overlap PressureSolver::Impl::overlapOfDirection() {
+  Level& level = multigrid.finest();
+  overlaps.resize(level.ny);
+  forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
+    Lanes link = {}, slope = {};
+    const std::uint8_t* kind = level.chunkRow(j);
+    for (int c = 0; c < level.chunks; ++c) {
+      if (kind[c] & kEmpty) continue;
+      const std::ptrdiff_t offset = level.at(c * kLanes, j);
+      link += applyChunk(level, kind[c], direction.data(), offset) * load(level.x.data() + offset);
+      slope += load(level.b.data() + offset) * load(direction.data() + offset);
+    }
+    overlaps[j] = {multigrid::sumOfLanes(link), multigrid::sumOfLanes(slope)};
+  });
+  Overlap total;
+  for (const Overlap& row : overlaps) {
+    total.withCorrection += row.withCorrection;
+    total.withResidual += row.withResidual;
+  }
+  return total;
+}
+
+int PressureSolver::Impl::solve(double start, double target, int maxIterations, bool onward) {
+  // Where rounding would reach the target, the residual is computed anew on half the way.
+  const Level& level = multigrid.finest();
+  const double rounding = start * kRounding * std::max(level.nx, level.ny);
+  const double enough = rounding < 0.5 * target ? target : std::max(target, std::sqrt(start * target));
   double product = 0;
+  if (!onward) far = start > kFar * target && target > 0;
   int iteration = 0;
   while (iteration < maxIterations) {
-    const double next = multigrid.cycle();
+    const double next = multigrid.cycle(far);
     if (!(next > 0)) break;  // nothing left to correct, or not a number
-    const double curvature = advanceDirection(iteration == 0 ? 0.0f : static_cast<float>(next / product));
+    double beta = iteration == 0 ? 0 : next / product, slope = next;
+    if (iteration == 0 && onward && curvature > 0) {
+      const Overlap overlap = overlapOfDirection();
+      beta = -overlap.withCorrection / curvature;
+      slope += beta * overlap.withResidual;
+    }
+    curvature = advanceDirection(static_cast<float>(beta));
     if (!(curvature > 0)) break;
     product = next;
     ++iteration;
-    const double residual = advanceSolution(static_cast<float>(product / curvature), iteration == 1,
+    const double residual = advanceSolution(static_cast<float>(slope / curvature), iteration == 1,
                                             target == 0 && iteration == maxIterations);
     if (!(residual > enough)) break;
   }
@@ -276,7 +322,8 @@ PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& 
     const bool stalled = source.flux > 0.5 * before;
     if (result.converged || stalled || result.iterations >= maxIterations) break;
     before = source.flux;
-    const int done = s.solve(source.flux, kSafety * tolerance * speed, maxIterations - result.iterations);
+    const int done = s.solve(source.flux, kSafety * tolerance * speed, maxIterations - result.iterations,
+                             result.iterations > 0);
     if (done == 0) break;
     result.iterations += done;
     s.flux.subtractGradient(level, s.solution, u, v);
@@ -309,7 +356,7 @@ void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v
 std::size_t PressureSolver::bytes() const {
   const Impl& s = *impl_;
   return s.multigrid.bytes() + s.regions.bytes() + 3 * s.solution.capacity() * sizeof(float) +
-         2 * s.rows.capacity() * sizeof(double);
+         2 * (s.rows.capacity() + s.overlaps.capacity()) * sizeof(double);
 }
 
 }  // namespace smokebox

@@ -31,10 +31,10 @@ std::vector<float> balancedNoise(const Boundary& boundary, const Multigrid& mult
   return f;
 }
 
-std::vector<float> cycleOf(Multigrid& multigrid, const std::vector<float>& f) {
+std::vector<float> cycleOf(Multigrid& multigrid, const std::vector<float>& f, bool twice = false) {
   multigrid::Level& level = multigrid.finest();
   for (int j = 0; j < level.ny; ++j) std::copy_n(f.data() + j * level.nx, level.nx, level.row(level.b, j));
-  multigrid.cycle();
+  multigrid.cycle(twice);
   std::vector<float> x;
   for (int j = 0; j < level.ny; ++j) {
     const float* row = level.row(level.x, j);
@@ -50,7 +50,8 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 TEST(Multigrid, IsSymmetricAndPositive) {
-  // f . M g = g . M f and f . M f > 0, as conjugate gradients need it: for any size, sides and solids.
+  // f . M g = g . M f and f . M f > 0, as conjugate gradients need it: for any size, sides and solids,
+  // V-cycle or W-cycle.
   struct Case {
     int nx, ny, solids;
     WallKind x, y;
@@ -67,11 +68,13 @@ TEST(Multigrid, IsSymmetricAndPositive) {
     ThreadPool pool(1);
     Multigrid multigrid(b, pool);
     const std::vector<float> f = balancedNoise(b, multigrid, 1), g = balancedNoise(b, multigrid, 2);
-    const std::vector<float> mf = cycleOf(multigrid, f), mg = cycleOf(multigrid, g);
-    const double scale = std::sqrt(dot(f, mf) * dot(g, mg));
-    EXPECT_GT(dot(f, mf), 0);
-    EXPECT_NEAR(dot(f, mg) / scale, dot(g, mf) / scale, 1e-6)
-        << c.nx << "x" << c.ny << " solids " << c.solids;
+    for (const bool twice : {false, true}) {
+      const std::vector<float> mf = cycleOf(multigrid, f, twice), mg = cycleOf(multigrid, g, twice);
+      const double scale = std::sqrt(dot(f, mf) * dot(g, mg));
+      EXPECT_GT(dot(f, mf), 0);
+      EXPECT_NEAR(dot(f, mg) / scale, dot(g, mf) / scale, 1e-6)
+          << c.nx << "x" << c.ny << " solids " << c.solids << " twice " << twice;
+    }
   }
 }
 

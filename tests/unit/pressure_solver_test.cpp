@@ -190,17 +190,33 @@ TEST(PressureSolver, StandsSmallShares) {
 }
 
 TEST(PressureSolver, KeepsToItsIterationsBesideThinWalls) {
-  // Thin walls and slivers cost no more than a dozen iterations from a cold start, at any resolution.
-  for (int n : {128, 256, 512}) {
-    const Boundary b = boxWithSolids(n, n == 512 ? 288 : n, 40);
+  // Forty solids of all sizes, thin walls and slivers among them, cost no more than nine iterations from a
+  // cold start to a divergence of 1e-5, and ten to 1e-6, wherever they lie and at any resolution.
+  for (int n : {128, 256, 512, 1024})
+    for (int seed = 7; seed < (n > 512 ? 8 : 11); ++seed) {
+      const Boundary b = boxWithSolids(n, n == 512 ? 288 : n, 40, seed);
+      Field u, v;
+      stir(b, u, v);
+      const Outcome o = projectOn(1, b, u, v);
+      EXPECT_TRUE(o.result.converged);
+      EXPECT_LE(o.result.iterations, 10) << n << " seed " << seed;
+      const Outcome tight = projectOn(1, b, u, v, 1e-6);
+      EXPECT_TRUE(tight.result.converged);
+      EXPECT_LE(tight.result.iterations, 12) << n << " seed " << seed;
+    }
+}
+
+TEST(PressureSolverSlow, KeepsToItsIterationsOnALargeGrid) {
+  // Nor at 2048 x 2048, where phi is so much larger than its differences that float32 rounds the residual off
+  // by more than the tolerance.
+  for (int seed : {7, 8, 9}) {
+    const Boundary b = boxWithSolids(2048, 2048, 40, seed);
     Field u, v;
     stir(b, u, v);
     const Outcome o = projectOn(1, b, u, v);
     EXPECT_TRUE(o.result.converged);
-    EXPECT_LE(o.result.iterations, 12) << n;
-    const Outcome tight = projectOn(1, b, u, v, 1e-6);
-    EXPECT_TRUE(tight.result.converged);
-    EXPECT_LE(tight.result.iterations, 14) << n;
+    EXPECT_LE(o.result.iterations, 9) << seed;
+    EXPECT_LE(worstDivergence(b, o.u, o.v), 1.02e-5);
   }
 }
 
@@ -212,7 +228,7 @@ TEST(PressureSolver, StandsManySealedRegions) {
   for (double tolerance : {1e-5, 1e-7}) {
     const Outcome o = projectOn(1, b, u, v, tolerance);
     EXPECT_TRUE(o.result.converged);
-    EXPECT_LE(o.result.iterations, tolerance > 1e-6 ? 20 : 28);
+    EXPECT_LE(o.result.iterations, tolerance > 1e-6 ? 20 : 28) << tolerance;
   }
 }
 
