@@ -41,6 +41,7 @@ struct PressureSolver::Impl {
       : pool(threads), multigrid(boundary, threads), flux(boundary, threads) {
     solution = direction = increment = multigrid.finest().x;
     rows.resize(boundary.grid.ny);
+    overlaps.resize(boundary.grid.ny);
     regions.rebuild(boundary, multigrid.finest());
   }
 
@@ -49,6 +50,7 @@ struct PressureSolver::Impl {
     regions.rebuild(boundary, multigrid.finest());
     const std::size_t size = static_cast<std::size_t>(multigrid.finest().extrasBegin);
     rows.resize(boundary.grid.ny);
+    overlaps.resize(boundary.grid.ny);
     for (Floats* f : {&solution, &direction, &increment}) f->assign(size, 0);
     predictable = false;
   }
@@ -237,7 +239,6 @@ void PressureSolver::Impl::add(const Floats& values, Field& phi, float gain) {
 
 PressureSolver::Impl::Overlap PressureSolver::Impl::overlapOfDirection() {
   Level& level = multigrid.finest();
-  overlaps.resize(level.ny);
   forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
     Lanes link = {}, slope = {};
     const std::uint8_t* kind = level.chunkRow(j);
