@@ -170,7 +170,10 @@ bool collide(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const 
   if (!betterOnA && aligned && onA.separation >= onB.separation - bias &&
       faceOnOutline(ab, onA.edge, onA.support, margin, manifold))
     return true;
-  return faceOnOutline(best, axis.edge, axis.support, margin, manifold);
+  if (faceOnOutline(best, axis.edge, axis.support, margin, manifold)) return true;
+  cornerOnFace(best, axis.edge, axis.support,
+               manifold);  // needles, tip to tip: beside the edge by a rounding
+  return true;
 }
 
 }  // namespace smokebox

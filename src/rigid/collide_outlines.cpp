@@ -48,10 +48,7 @@ void nearestOutline(const Side& side, OutlineChoice& choice) {
     const double separation = dot(normal, at - p.points[k]);
     if (separation <= choice.fallbackSeparation) continue;
     choice.fallbackSeparation = separation;
-    choice.fallback.count = 0;
-    addPoint(side, at, separation, normal, featureOf(side, static_cast<int>(k), corner, false),
-             choice.fallback);
-    setNormal(side, normal, choice.fallback);
+    cornerOnFace(side, static_cast<int>(k), corner, choice.fallback);
   }
 }
 

@@ -33,6 +33,15 @@ void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::
   setNormal(side, normal, manifold);
 }
 
+void cornerOnFace(const Side& side, int k, int corner, Manifold& manifold) {
+  const Vec2 normal = side.reference.normals[k];
+  const Vec2 at = toWorld(side.otherInReference, side.other.points[corner]);
+  manifold.count = 0;
+  addPoint(side, at, dot(normal, at - side.reference.points[k]), normal, featureOf(side, k, corner, false),
+           manifold);
+  setNormal(side, normal, manifold);
+}
+
 namespace {
 
 /// Edge `incident` of the other piece clipped to edge `k` of the reference; points farther than `margin` are
@@ -67,20 +76,6 @@ bool clipToFace(const Side& side, int k, int incident, double margin, Manifold& 
   return manifold.count > 0;
 }
 
-/// Corner `corner` of the other piece alone against edge `k` of the reference.
-bool cornerOnFace(const Side& side, int k, int corner, double margin, Manifold& manifold) {
-  const ConvexPiece& p = side.reference;
-  const Vec2 normal = p.normals[k], at = toWorld(side.otherInReference, side.other.points[corner]);
-  const Vec2 from = p.points[k], to = p.points[next(p, k)];
-  const double apart = dot(normal, at - from);
-  if (dot(at - from, to - from) < 0 || dot(at - to, to - from) > 0) return false;
-  if (apart > margin + p.radius + side.other.radius) return false;
-  manifold.count = 0;
-  addPoint(side, at, apart, normal, featureOf(side, k, corner, false), manifold);
-  setNormal(side, normal, manifold);
-  return true;
-}
-
 }  // namespace
 
 bool faceOnOutline(const Side& side, int k, int supported, double margin, Manifold& manifold) {
@@ -99,7 +94,12 @@ bool faceOnOutline(const Side& side, int k, int supported, double margin, Manifo
     best = edge;
   }
   if (best >= 0) return clipToFace(side, k, best, margin, manifold);
-  return touchable && cornerOnFace(side, k, supported, margin, manifold);
+  if (!touchable) return false;
+  const Vec2 at = toWorld(side.otherInReference, q.points[supported]);
+  const Vec2 from = side.reference.points[k], to = side.reference.points[next(side.reference, k)];
+  if (dot(at - from, to - from) < 0 || dot(at - to, to - from) > 0) return false;
+  cornerOnFace(side, k, supported, manifold);
+  return manifold.points[0].gap <= margin;
 }
 
 }  // namespace smokebox::convex

@@ -31,6 +31,9 @@ void setNormal(const Side& side, Vec2 normal, Manifold& manifold);
 void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::uint32_t feature,
                  Manifold& manifold);
 
+/// One point: corner `corner` of the other against the line of edge `k` of the reference.
+void cornerOnFace(const Side& side, int k, int corner, Manifold& manifold);
+
 /// Contact of edge `k`, on the outline, with what the other piece has on its own outline at its supported
 /// corner: an edge that runs against it, which is clipped to edge `k`, or the corner if it can be touched
 /// from there. Points farther than `margin` are left out; false if none is left.

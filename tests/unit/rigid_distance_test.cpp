@@ -1,6 +1,7 @@
 // Distances of convex pieces and times of impact.
 #include <gtest/gtest.h>
 
+#include "rigid/collide.h"
 #include "rigid/distance.h"
 #include "rigid_cases.h"
 
@@ -28,6 +29,38 @@ TEST(RigidDistance, RandomPairsAgreeWithAllEdgesAgainstAll) {
     }
   }
   EXPECT_GT(apart, 10000);
+}
+
+TEST(RigidDistance, SizesAndNeedlesDoNotMatter) {
+  // From 0.1 mm to 1 km, as flat as 1 to 10,000, far from the origin, with gaps down to a billionth: the
+  // error stays at rounding, and a contact is found whenever the gap is within the margin.
+  Dice dice(12);
+  int near = 0;
+  for (int trial = 0; trial < 30000; ++trial) {
+    const double size = exact::power(10, dice.below(8) - 4), flat = 1 / exact::power(10, dice.below(5));
+    const auto piece = [&] {
+      const int corners = 1 + dice.below(10);
+      ConvexPiece made = randomPiece(dice, corners, corners < 3 ? dice.between(0.001, 0.1) : 0);
+      const double height = dice.below(2) ? flat : 1;
+      for (Vec2& p : made.points) p = {size * p.x, size * height * p.y};
+      return makePiece(made.points, size * height * made.radius);
+    };
+    const ConvexPiece a = piece(), b = piece();
+    Frame fa = dice.frame(1.5 * size), fb = dice.frame(1.5 * size);
+    const Vec2 far{size * dice.between(-100, 100), size * dice.between(-100, 100)};
+    const Closest first = closestPoints(a, fa, b, fb);
+    const double wanted = size / exact::power(10, dice.below(9)) + a.radius + b.radius;
+    fb.position = fb.position + (wanted - first.distance) * first.normal + far;
+    fa.position = fa.position + far;
+    const double cores = slowDistance(a, fa, b, fb);
+    if (cores < 1e-10 * size) continue;
+    ++near;
+    ASSERT_NEAR(closestPoints(a, fa, b, fb).distance, cores - a.radius - b.radius, 1e-12 * size) << trial;
+    Manifold manifold;
+    ASSERT_EQ(collide(a, fa, b, fb, 0.15 * size, manifold), cores - a.radius - b.radius <= 0.15 * size)
+        << trial;
+  }
+  EXPECT_GT(near, 15000);
 }
 
 TEST(RigidDistance, FastRodsNeverPassAPost) {
