@@ -1,7 +1,7 @@
 // A shape made ready for collisions: convex pieces, outlines, mass properties, a tree of boxes.
 // Circles and capsules stay round, in unions too; ellipses become polygons of at least 64 corners; other
 // polygons are cut into convex pieces by their own corners (ear clipping, then diagonals that no corner needs
-// are taken out: Hertel and Mehlhorn 1983, at most 4 times as many pieces as needed). O(n^2) for n corners.
+// are taken out: Hertel and Mehlhorn 1983, at most 4 times as many pieces as needed).
 #pragma once
 #include <vector>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace smokebox {
 namespace {
@@ -87,6 +88,49 @@ void joinHole(const std::vector<Vec2>& points, std::vector<int>& loop, const std
   loop.insert(loop.begin() + at + 1, bridge.begin(), bridge.end());
 }
 
+/// Points by the square cell of a grid that they lie in, about one to a cell.
+class PointGrid {
+ public:
+  PointGrid(const std::vector<Vec2>& points, std::vector<int> numbers) : numbers_(std::move(numbers)) {
+    if (numbers_.empty()) return;
+    Vec2 hi{-1e300, -1e300};
+    for (int k : numbers_) {
+      lo_ = {std::min(lo_.x, points[k].x), std::min(lo_.y, points[k].y)};
+      hi = {std::max(hi.x, points[k].x), std::max(hi.y, points[k].y)};
+    }
+    side_ = static_cast<int>(std::clamp(std::sqrt(static_cast<double>(numbers_.size())), 1.0, 512.0));
+    scale_ = {side_ / std::max(hi.x - lo_.x, 1e-300), side_ / std::max(hi.y - lo_.y, 1e-300)};
+    const auto cell = [&](int k) { return row(points[k].y) * side_ + column(points[k].x); };
+    std::sort(numbers_.begin(), numbers_.end(), [&](int a, int b) {
+      const int ca = cell(a), cb = cell(b);
+      return ca != cb ? ca < cb : a < b;
+    });
+    starts_.assign(static_cast<std::size_t>(side_) * side_ + 1, 0);
+    for (int k : numbers_) ++starts_[cell(k) + 1];
+    for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
+  }
+
+  /// Is there one for which `test` holds, in the cells that the box meets?
+  template <class Test>
+  bool any(Vec2 lo, Vec2 hi, const Test& test) const {
+    if (numbers_.empty()) return false;
+    const int first = column(lo.x), last = column(hi.x), top = row(hi.y);
+    for (int y = row(lo.y); y <= top; ++y)
+      for (int i = starts_[y * side_ + first]; i < starts_[y * side_ + last + 1]; ++i)
+        if (test(numbers_[i])) return true;
+    return false;
+  }
+
+ private:
+  int column(double x) const { return cellOf((x - lo_.x) * scale_.x); }
+  int row(double y) const { return cellOf((y - lo_.y) * scale_.y); }
+  int cellOf(double at) const { return static_cast<int>(std::clamp(at, 0.0, side_ - 1.0)); }
+
+  std::vector<int> numbers_, starts_;
+  Vec2 lo_{1e300, 1e300}, scale_;
+  int side_ = 1;
+};
+
 class EarClipper {
  public:
   EarClipper(const std::vector<Vec2>& points, const std::vector<int>& loop)
@@ -98,9 +142,14 @@ class EarClipper {
       next_[k] = k + 1 < left_ ? k + 1 : 0;
       previous_[k] = k > 0 ? k - 1 : left_ - 1;
     }
-    for (int k = 0; k < left_; ++k) reflex_[k] = !(turn(k) > 0);
-    for (int k = 0; k < left_; ++k)
-      if (reflex_[k]) reflexCorners_.push_back(k);
+    std::vector<Vec2> corners;
+    std::vector<int> reflex;
+    for (int k = 0; k < left_; ++k) {
+      corners.push_back(point(k));
+      reflex_[k] = !(turn(k) > 0);
+      if (reflex_[k]) reflex.push_back(k);
+    }
+    grid_ = PointGrid(corners, reflex);
   }
 
   void clip(std::vector<std::array<int, 3>>& triangles) {
@@ -126,18 +175,16 @@ class EarClipper {
   Vec2 point(int k) const { return points_[loop_[k]]; }
   double turn(int k) const { return area(point(previous_[k]), point(k), point(next_[k])); }
 
-  bool isEar(int k) {
+  bool isEar(int k) const {
     const Vec2 a = point(previous_[k]), b = point(k), c = point(next_[k]);
-    const double loX = std::min({a.x, b.x, c.x}), hiX = std::max({a.x, b.x, c.x});
-    const double loY = std::min({a.y, b.y, c.y}), hiY = std::max({a.y, b.y, c.y});
-    std::erase_if(reflexCorners_, [this](int r) { return !reflex_[r]; });
-    for (int r : reflexCorners_) {
-      const Vec2 p = point(r);
-      if (p.x < loX || p.x > hiX || p.y < loY || p.y > hiY) continue;
-      if (p == a || p == b || p == c) continue;
-      if (within(a, b, c, p)) return false;
-    }
-    return true;
+    const Vec2 lo{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})};
+    const Vec2 hi{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
+    const auto hides = [&](int corner) {
+      const Vec2 p = point(corner);
+      if (!reflex_[corner] || p.x < lo.x || p.x > hi.x || p.y < lo.y || p.y > hi.y) return false;
+      return p != a && p != b && p != c && within(a, b, c, p);
+    };
+    return !grid_.any(lo, hi, hides) && std::none_of(late_.begin(), late_.end(), hides);
   }
 
   int flattest() const {
@@ -164,14 +211,16 @@ class EarClipper {
     for (int neighbour : {before, after}) {
       const bool was = reflex_[neighbour] != 0, is = !(turn(neighbour) > 0);
       reflex_[neighbour] = is;
-      if (is && !was) reflexCorners_.push_back(neighbour);
+      if (is && !was) late_.push_back(neighbour);
     }
   }
 
   const std::vector<Vec2>& points_;
   const std::vector<int>& loop_;
-  std::vector<int> next_, previous_, reflexCorners_;
+  std::vector<int> next_, previous_;
   std::vector<char> reflex_;
+  PointGrid grid_{{}, {}};  // of the corners that were reflex at first
+  std::vector<int> late_;   // those that became so by rounding
   int left_;
 };
 

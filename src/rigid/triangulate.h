@@ -1,5 +1,6 @@
 // Triangles of a region by its own corners: ear clipping (Meisters 1975), holes joined to their surroundings
-// by bridges (Eberly 2002). O(n r) for n corners of which r are reflex.
+// by bridges (Eberly 2002). Reflex corners lie in a grid: nearly linear time for most outlines, O(n^2) at
+// worst.
 #pragma once
 #include <array>
 #include <vector>

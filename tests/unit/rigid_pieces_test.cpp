@@ -150,6 +150,42 @@ TEST(RigidPieces, MassIsExactForCurves) {
   EXPECT_EQ(body.pieces[0].points.size(), 2u);
 }
 
+TEST(RigidPieces, SolidsKeepTheirOwnOrigin) {
+  // A solid turns about the (0, 0) that it is given in: its pieces stay where they are, and its centre of
+  // mass is told.
+  const Outline bent{{1, 0}, {3, 0}, {3, 1}, {2, 1}, {2, 2}, {1, 2}};
+  const BodyShape solid = makeSolidShape({PolygonShape{bent}, {}}, 1e-3);
+  for (const ConvexPiece& piece : solid.pieces)
+    for (Vec2 p : piece.points) EXPECT_NE(std::find(bent.begin(), bent.end(), p), bent.end());
+  EXPECT_NEAR(solid.mass.centre.x, (2 * 2 + 1 * 1.5) / 3, 1e-14);
+  EXPECT_NEAR(solid.mass.centre.y, (2 * 0.5 + 1 * 1.5) / 3, 1e-14);
+  EXPECT_NEAR(solid.reach, std::sqrt(10), 1e-15);
+  Vec2 offset;
+  const BodyShape body = makeBodyShape({PolygonShape{bent}, {}}, 1e-3, offset);
+  EXPECT_EQ(offset, solid.mass.centre);
+  EXPECT_NEAR(length(body.mass.centre), 0, 1e-15);
+  EXPECT_NEAR(body.mass.secondMoment, solid.mass.secondMoment, 1e-15);
+  EXPECT_NEAR(body.thinnest, 1, 1e-12);
+}
+
+TEST(RigidPieces, SpiralsOfManyCornersAreCovered) {
+  // A spiral of 8,000 corners, the slowest kind, is covered by few pieces.
+  const auto spiral = [](int corners) {
+    Outline outline;
+    for (int side = 0; side < 2; ++side)
+      for (int i = 0; i < corners / 2; ++i) {
+        const int k = side == 0 ? i : corners / 2 - 1 - i;
+        const double turn = 0.05 * k + 3, r = 0.01 * turn + 0.03 * (1 - side);
+        outline.push_back({r * exact::cos(turn), r * exact::sin(turn)});
+      }
+    return outline;
+  };
+  EXPECT_GT(signedArea(spiral(8000)), 0);
+  const std::vector<ConvexPiece> pieces = convexPieces({spiral(8000)});
+  expectCover({spiral(8000)}, pieces);
+  EXPECT_LT(pieces.size(), 4100u);
+}
+
 TEST(RigidPieces, UnionsKeepRoundPartsAndTheirMass) {
   // A dumbbell of two disks apart is exact; with a bar between them the overlap counts once.
   Vec2 offset;
