@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/interrupt.h"
+#include "app/notices.h"
 #include "base/errors.h"
 #include "world/world.h"
 
@@ -63,7 +64,7 @@ FilmRuns::FilmRuns(const std::vector<SceneDocument>& scenes, const std::vector<s
   for (std::size_t k = 0; k < scenes.size(); ++k)
     threads_.emplace_back([this, scene = scenes[k], label = labels[k], panel = static_cast<int>(k)] {
       try {
-        run(scene, panel);
+        run(scene, label, panel);
       } catch (const OtherFailed&) {
       } catch (const SimulationError& error) {
         pipeline_.fail(std::make_exception_ptr(SimulationError(label + ": " + error.what())));
@@ -92,7 +93,7 @@ void FilmRuns::finish() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void FilmRuns::run(const SceneDocument& scene, int panel) {
+void FilmRuns::run(const SceneDocument& scene, const std::string& label, int panel) {
   World world(scene, {.threads = threadsEach_});
   const int stepsPerFrame = world.spec().time.stepsPerFrame;
   while (const auto order = orders_[panel].receive()) {
@@ -101,6 +102,7 @@ void FilmRuns::run(const SceneDocument& scene, int panel) {
       throwIfInterrupted();
       if (stop_) throw OtherFailed();
       world.step();
+      printNotices(world.takeNotices(), label);
     }
     Snapshot& snapshot = frame.panels[panel];
     world.capture(snapshot);

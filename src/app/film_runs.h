@@ -41,7 +41,7 @@ class FilmRuns {
     std::unique_ptr<FilmFrame> frame;
     std::atomic<int> missing;
   };
-  void run(const SceneDocument& scene, int panel);
+  void run(const SceneDocument& scene, const std::string& label, int panel);
 
   FilmPipeline& pipeline_;
   FilmRanges ranges_;

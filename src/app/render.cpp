@@ -13,6 +13,7 @@
 #include "app/film_outputs.h"
 #include "app/film_pipeline.h"
 #include "app/interrupt.h"
+#include "app/notices.h"
 #include "app/progress.h"
 #include "app/scene_file.h"
 #include "app/stats_file.h"
@@ -91,6 +92,10 @@ int runRender(const RenderOptions& options) {
     auto step = [&] {
       throwIfInterrupted();
       world.step();
+      if (const auto notices = world.takeNotices(); !notices.empty()) {
+        progress.clear();
+        printNotices(notices);
+      }
       if (stats) stats->add(world.figures());
     };
     for (long frame = 0; frame <= last; ++frame) {

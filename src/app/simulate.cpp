@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/notices.h"
 #include "app/scene_file.h"
 #include "app/stats_file.h"
 #include "world/world.h"
@@ -22,6 +23,7 @@ int runSimulate(const SimulateOptions& options) {
   for (long k = 0; k < steps; ++k) {
     throwIfInterrupted();
     world.step();
+    printNotices(world.takeNotices());
     if (stats) stats->add(world.figures());
   }
   const SummaryFigures summary = world.summary();

@@ -88,13 +88,14 @@ void World::capture(Snapshot& snapshot) const {
   // What sticks out of a periodic side comes in again on the other.
   for (const SolidsOnGrid::Copy& copy : onGrid_.copies()) {
     const int k = copy.solid;
-    if (copy.shift == Vec2{} || !solids_.shown(k)) continue;
+    if (copy.shift == Vec2{} || k >= solids_.count() || !solids_.shown(k)) continue;
     std::vector<Outline> outlines = solids_.moving()[k].outlines;
     for (Outline& outline : outlines)
       for (Vec2& point : outline) point = point + copy.shift;
     snapshot.solids.push_back(
         {solids_.spec(k).name, k, std::move(outlines), solids_.pose(k), solids_.spec(k).color});
   }
+  if (rigid_) rigid_->capture(time(), snapshot);
   probes_.capture(solids_, snapshot.probes);
 
   snapshot.captions.clear();

@@ -15,7 +15,7 @@ struct SmokeFigures {
   double min = 0, max = 0;                 // smoke value
 };
 
-/// A solid with `report: true`.
+/// A solid with `report: true`, or a free body.
 struct BodyFigures {
   std::string name;
   Vec2 position;  // of its centre of mass, m
@@ -40,10 +40,12 @@ struct StepFigures {
   int iterations = 0;
   double divergence = 0, compression = 0;
   SmokeFigures smoke;
-  Vec2 momentum;                             // N s per metre of depth
-  double energyFluid = 0, energyBodies = 0;  // J per metre of depth
-  int contacts = 0;
-  double overlap = 0;
+  Vec2 momentum;               // of fluid, bodies, particles and cloth, N s per metre of depth
+  double angularMomentum = 0;  // of bodies, particles and cloth about the origin, N m s per metre of depth
+  double energyFluid = 0, energyBodies = 0;  // kinetic, J per metre of depth
+  double energyPotential = 0;  // of bodies, particles and cloth in gravity (0 at height 0), and of springs
+  int contacts = 0;            // points that touch
+  double overlap = 0;          // the deepest, m
   std::vector<BodyFigures> bodies;
   std::vector<ProbeFigures> probes;
 };

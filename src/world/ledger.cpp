@@ -95,14 +95,14 @@ void listSolids(const SolidScripts& solids, std::vector<BodyFigures>& out) {
 }
 
 void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScripts& solids,
-                  double pressureScale, double dynamicViscosity, Field& pressure,
-                  std::vector<BodyFigures>& out) {
+                  const std::vector<MovingSolid>& covered, double pressureScale, double dynamicViscosity,
+                  Field& pressure, std::vector<BodyFigures>& out) {
   const Grid& grid = boundary.grid;
   if (pressure.empty()) pressure = Field(grid.nx, grid.ny);
   for (int j = 0; j < grid.ny; ++j)
     for (int i = 0; i < grid.nx; ++i) pressure(i, j) = static_cast<float>(pressureScale * fluid.phi()(i, j));
   const std::vector<SurfaceForce> forces =
-      surfaceForces(boundary, solids.moving(), pressure, fluid.shear(), dynamicViscosity);
+      surfaceForces(boundary, covered, pressure, fluid.shear(), dynamicViscosity);
   const std::size_t first = out.size();
   listSolids(solids, out);
   auto body = out.begin() + static_cast<std::ptrdiff_t>(first);

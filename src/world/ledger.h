@@ -20,10 +20,11 @@ FluidTotals fluidTotals(const Boundary& boundary, const Fluid& fluid, double den
 /// The solids with `report: true` and their motion, without forces.
 void listSolids(const SolidScripts& solids, std::vector<BodyFigures>& out);
 
-/// The same with the forces of the fluid on them; `pressure` is scratch memory.
+/// The same with the forces of the fluid on them; `covered`: all that is on the grid, the solids first;
+/// `pressure` is scratch memory.
 void reportSolids(const Boundary& boundary, const Fluid& fluid, const SolidScripts& solids,
-                  double pressureScale, double dynamicViscosity, Field& pressure,
-                  std::vector<BodyFigures>& out);
+                  const std::vector<MovingSolid>& covered, double pressureScale, double dynamicViscosity,
+                  Field& pressure, std::vector<BodyFigures>& out);
 
 /// "in cell (i, j), at (x, y)" of the first velocity that is not finite; "somewhere" if there is none.
 std::string whereNotFinite(const Fluid& fluid, const Grid& grid);

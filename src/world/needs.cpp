@@ -70,6 +70,7 @@ Needs needsOf(const SceneSpec& spec) {
                                    [](const SolidSpec& solid) { return !solid.motion.isStill(); });
   needs.reports = std::any_of(spec.solids.begin(), spec.solids.end(),
                               [](const SolidSpec& solid) { return solid.report; });
+  needs.rigid = !spec.bodies.empty() || !spec.cloths.empty();
   needs.fluid = spec.hasFluid;
   if (!needs.fluid) return needs;
 
@@ -89,10 +90,13 @@ Needs needsOf(const SceneSpec& spec) {
   needs.parts.confined = spec.fluid.vorticity != 0 || eventSets(spec, "fluid.vorticity");
   needs.parts.forced = needs.parts.viscous || needs.parts.confined || needs.buoyancy || needs.heatRises ||
                        anyEvent<ForceAction>(spec);
-  needs.parts.inviscidDrag =
-      (spec.fluid.viscosity == 0 || eventSets(spec, "fluid.viscosity")) &&
-      (eventSets(spec, "solids") || std::any_of(spec.solids.begin(), spec.solids.end(),
-                                                [](const SolidSpec& solid) { return solid.drag > 0; }));
+  needs.parts.inviscidDrag = (spec.fluid.viscosity == 0 || eventSets(spec, "fluid.viscosity")) &&
+                             (eventSets(spec, "solids") || eventSets(spec, "bodies") ||
+                              std::any_of(spec.solids.begin(), spec.solids.end(),
+                                          [](const SolidSpec& solid) { return solid.drag > 0; }) ||
+                              std::any_of(spec.bodies.begin(), spec.bodies.end(), [](const BodySpec& body) {
+                                return !body.particle && body.drag > 0;
+                              }));
   return needs;
 }
 

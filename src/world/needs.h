@@ -18,8 +18,9 @@ struct Needs {
   bool heatDiffuses = false;  // a diffusivity that is not 0, now or after an event
   bool heatRises = false;     // expansion and gravity
   bool sourcesDrive = false;  // a source with a velocity
-  bool movingSolids = false;
-  bool reports = false;  // force and torque on a solid
+  bool rigid = false;         // a body, a particle or a cloth
+  bool movingSolids = false;  // scripted ones
+  bool reports = false;       // force and torque on a solid
 };
 
 Needs needsOf(const SceneSpec& spec);

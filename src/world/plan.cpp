@@ -1,5 +1,7 @@
 #include "world/plan.h"
 
+#include <algorithm>
+
 #include "world/needs.h"
 
 namespace smokebox {
@@ -34,6 +36,35 @@ PlanLine fieldsInPictures(const SceneSpec& spec) {
   return line;
 }
 
+std::string counted(std::size_t count, const char* what) { return std::to_string(count) + " " + what; }
+
+/// What moves by itself; counts the bodies.
+void addBodies(const SceneSpec& spec, Plan& plan) {
+  std::size_t particles = 0, threads = 0, nodes = 0;
+  for (const BodySpec& body : spec.bodies) particles += body.particle;
+  const std::size_t bodies = spec.bodies.size() - particles;
+  for (const ClothSpec& cloth : spec.cloths) {
+    const std::size_t i = cloth.columns(), j = cloth.rows();
+    nodes += i * j;
+    threads += (i - 1) * j + i * (j - 1) + (cloth.shear > 0 ? 2 * (i - 1) * (j - 1) : 0);
+    if (cloth.bend > 0)
+      threads += (std::max<std::size_t>(i, 2) - 2) * j + i * (std::max<std::size_t>(j, 2) - 2);
+  }
+  plan.bodies = static_cast<int>(bodies);
+  auto line = [&](const char* stage, bool modelled, const std::string& yes, const char* no) {
+    plan.lines.push_back({stage, modelled, modelled ? yes : no});
+  };
+  line("bodies", bodies > 0, counted(bodies, "of them, with contacts"), "no bodies");
+  line("particles", particles > 0, counted(particles, "of them, with contacts"), "no particles");
+  line("cloth", nodes > 0, counted(nodes, "particles and ") + counted(threads, "springs"), "no cloth");
+  line("springs", !spec.springs.empty(), counted(spec.springs.size(), "of them"), "no springs");
+  line("joints", !spec.joints.empty(), counted(spec.joints.size(), "of them"), "no joints");
+  constexpr double kBytesEach = 1200, kBytesOfSpring = 200;  // with their contacts
+  plan.memoryMb += (kBytesEach * static_cast<double>(spec.bodies.size() + nodes) +
+                    kBytesOfSpring * static_cast<double>(threads + spec.springs.size())) /
+                   (1024 * 1024);
+}
+
 }  // namespace
 
 Plan planOf(const SceneSpec& spec) {
@@ -55,8 +86,8 @@ Plan planOf(const SceneSpec& spec) {
   line("pressure projection", needs.fluid, "an incompressible fluid", "no fluid");
   line("viscosity", needs.parts.viscous, "fluid.viscosity", "fluid.viscosity is 0");
   line("vorticity confinement", needs.parts.confined, "fluid.vorticity", "fluid.vorticity is 0");
-  line("surface drag", needs.parts.inviscidDrag, "a solid with drag in an inviscid fluid",
-       needs.parts.viscous ? "the viscosity does it" : "no solid has drag");
+  line("surface drag", needs.parts.inviscidDrag, "a solid or body with drag in an inviscid fluid",
+       needs.parts.viscous ? "the viscosity does it" : "no solid and no body has drag");
   line("smoke", needs.smoke, "sources or bursts", "no source and no burst");
   line("buoyancy", needs.buoyancy, "smoke.buoyancy", needs.smoke ? "smoke.buoyancy is 0" : "no smoke");
   line("temperature", needs.heat, "temperature", "no temperature is named");
@@ -65,9 +96,13 @@ Plan planOf(const SceneSpec& spec) {
   line("buoyancy of heat", needs.heatRises, "temperature.expansion and gravity",
        needs.heat ? "no gravity, or temperature.expansion is 0" : "no temperature");
   line("driven sources", needs.sourcesDrive, "a source with a velocity", "no source has a velocity");
-  line("solids on the grid", needs.fluid && plan.solids > 0,
-       needs.movingSolids ? "anew when one moves" : "once: none moves", "no solids in a fluid");
+  const bool bodies = std::any_of(spec.bodies.begin(), spec.bodies.end(),
+                                  [](const BodySpec& body) { return !body.particle; });
+  line("solids on the grid", needs.fluid && (plan.solids > 0 || bodies),
+       needs.movingSolids || bodies ? "anew when one moves" : "once: none moves",
+       "no solids and no bodies in a fluid");
   line("forces on solids", needs.reports, "report: true", "no solid reports");
+  addBodies(spec, plan);
   line("probes", !spec.probes.empty(), "probes", "no probes");
   plan.lines.push_back(fieldsInPictures(spec));
   line("events", !spec.events.empty(), "events", "no events");
@@ -84,7 +119,7 @@ Plan planOf(const SceneSpec& spec) {
     if (needs.heatDiffuses) fields += 8;
     if (needs.smoke) fields += 3.0 * plan.smokeColors + 6 + static_cast<double>(spec.smoke.sources.size());
   }
-  plan.memoryMb = fields * 4 * (plan.nx + 32.0) * (plan.ny + 8.0) / (1024 * 1024);
+  plan.memoryMb += fields * 4 * (plan.nx + 32.0) * (plan.ny + 8.0) / (1024 * 1024);
   return plan;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "base/hash.h"
 #include "base/maths.h"
 #include "scene/tree_path.h"
 #include "world/ledger.h"
@@ -27,8 +26,11 @@ World::World(const SceneDocument& document, const Options& options)
       needs_(needsOf(spec_)),
       probes_(spec_.probes, kOutlineTolerance * spec_.domain.grid.h) {
   boundary_.grid = spec_.domain.grid;
-  if (!spec_.bodies.empty() || !spec_.cloths.empty())
-    throw Error(ExitStatus::failed, "this version reads and checks bodies, but does not move them");
+  if (needs_.rigid) {
+    rigid_ = std::make_unique<RigidStage>(spec_, solids_, kOutlineTolerance * spec_.domain.grid.h,
+                                          needs_.fluid, pool_);
+    gatherCovered();
+  }
   if (needs_.fluid) buildFluid();
   stepMs_.reserve(std::min(spec_.time.steps + 1, 1L << 20));
   if (options_.figures) recordFigures();
@@ -43,8 +45,12 @@ void World::step() {
   clock_.stage("events");
   moveSolids();
   clock_.stage("scripts");
+  if (rigid_) {
+    moveBodies();
+    clock_.stage("bodies");
+  }
   if (fluid_) {
-    coverGrid(solids_.shapesMoved());
+    coverGrid(solids_.shapesMoved() || (rigid_ && rigid_->shapesMoved()));
     clock_.stage("cover");
     if (smoke_) smoke_->emit(boundary_, time(), dt);
     if (needs_.parts.forced) addForces();
@@ -81,7 +87,7 @@ void World::buildFluid() {
     boundary_.sides[s].kind = spec_.domain.walls[s].kind;
   }
   setWalls(0);
-  onGrid_.cover(solids_.moving(), true, boundary_);
+  onGrid_.cover(covered(), true, boundary_);
   fluid_.emplace(boundary_, needs_.parts, pool_);
   if (needs_.smoke) smoke_.emplace(spec_, boundary_, kOutlineTolerance * grid.h, pool_);
   if (needs_.heat) heat_.emplace(spec_, boundary_, needs_.heatDiffuses, pool_);
@@ -146,12 +152,30 @@ void World::fireEvents() {
     } else if (const auto* visibility = std::get_if<VisibilityAction>(&action)) {
       const int solid = solids_.find(visibility->name);
       if (solid >= 0) solids_.setShown(solid, visibility->visible);
+      if (rigid_) rigid_->setShown(visibility->name, visibility->visible);
     } else if (const auto* stop = std::get_if<StopAction>(&action)) {
       solids_.stop(solids_.find(stop->solid));
     } else if (const auto* caption = std::get_if<CaptionAction>(&action)) {
       captions_.push_back({caption->text, time() + caption->duration});
+    } else if (rigid_) {
+      fireRigid(spec_.events[index], index);
     }
   }
+}
+
+void World::fireRigid(const EventSpec& event, int index) {
+  if (const auto* impulse = std::get_if<ImpulseAction>(&event.action))
+    rigid_->impulse(*impulse);
+  else if (const auto* pull = std::get_if<PullAction>(&event.action))
+    rigid_->pull(*pull, time());
+  else if (const auto* hold = std::get_if<HoldAction>(&event.action))
+    rigid_->hold(*hold);
+  else if (const auto* remove = std::get_if<RemoveAction>(&event.action))
+    rigid_->remove(*remove);
+  else if (const auto* add = std::get_if<AddAction>(&event.action))
+    rigid_->add(*add, index);
+  else if (const auto* cut = std::get_if<CutAction>(&event.action))
+    rigid_->cut(*cut);
 }
 
 void World::adoptSettings(const SetAction& action) {
@@ -164,11 +188,12 @@ void World::adoptSettings(const SetAction& action) {
     if (action.path.starts_with(byName + ".motion") || action.path.starts_with(byIndex + ".motion"))
       solids_.motionReplaced(k, time());
   }
+  if (rigid_) rigid_->adopt(spec_, action.path);
   if (!fluid_) return;
   if (smoke_ && concerns(action.path, "smoke.sources")) smoke_->placeSources(spec_, boundary_);
   setWalls(time() + spec_.time.step);
   if (heat_ && concerns(action.path, "temperature.walls")) heat_->setSides(spec_, boundary_, time());
-  onGrid_.cover(solids_.moving(), false, boundary_);
+  onGrid_.cover(covered(), false, boundary_);
 }
 
 void World::moveSolids() {
@@ -181,6 +206,27 @@ void World::moveSolids() {
   }
 }
 
+void World::moveBodies() {
+  try {
+    rigid_->step(solids_, stepCount_, spec_.time.step);
+  } catch (const SimulationError& error) {
+    fail(error.what(), "try a smaller time.step, or a smaller stiffness or force");
+  }
+  gatherCovered();
+}
+
+void World::gatherCovered() {
+  if (!needs_.fluid) return;
+  const std::vector<MovingSolid>&solids = solids_.moving(), &bodies = rigid_->moving();
+  covered_.resize(solids.size() + bodies.size());
+  std::copy(solids.begin(), solids.end(), covered_.begin());
+  std::copy(bodies.begin(), bodies.end(), covered_.begin() + static_cast<std::ptrdiff_t>(solids.size()));
+}
+
+std::vector<std::string> World::takeNotices() {
+  return rigid_ ? rigid_->takeNotices() : std::vector<std::string>();
+}
+
 // --- the fluid's stages
 // -----------------------------------------------------------------------------------------------
 
@@ -188,7 +234,7 @@ void World::coverGrid(bool shapesMoved) {
   if (wallsDependOnTime_) setWalls(time() + spec_.time.step);
   if (!shapesMoved && !solidsMovedBefore_ && !wallsDependOnTime_) return;
   if (shapesMoved) fluid_->prepareUncovering(boundary_);
-  onGrid_.cover(solids_.moving(), shapesMoved, boundary_);
+  onGrid_.cover(covered(), shapesMoved, boundary_);
   if (shapesMoved) fluid_->boundaryChanged(boundary_);
   if (shapesMoved && heat_) heat_->boundaryChanged(boundary_);
   solidsMovedBefore_ = shapesMoved;  // one more time after the last move, for the velocities to become 0
@@ -251,81 +297,6 @@ void World::fail(const std::string& what, const std::string& hint) const {
   char place[64];
   std::snprintf(place, sizeof place, "step %ld (t = %.4g s): ", stepCount_ + 1, time() + spec_.time.step);
   throw SimulationError(place + what + " (" + hint + ")");
-}
-
-// --- figures
-// ----------------------------------------------------------------------------------------------------------
-
-void World::recordFigures() {
-  const double pressureScale = spec_.fluid.density * boundary_.grid.h / spec_.time.step;
-  figures_.bodies.clear();
-  if (!fluid_ && needs_.reports) listSolids(solids_, figures_.bodies);
-  if (fluid_) {
-    const FluidTotals totals = fluidTotals(boundary_, *fluid_, spec_.fluid.density, pool_);
-    figures_.momentum = totals.momentum;
-    figures_.energyFluid = totals.kineticEnergy;
-    if (needs_.reports)
-      reportSolids(boundary_, *fluid_, solids_, pressureScale, spec_.fluid.density * spec_.fluid.viscosity,
-                   pressure_, figures_.bodies);
-  }
-  if (smoke_) {
-    const Smoke::Totals totals = smoke_->smoke().totals();
-    figures_.smoke = {totals.mass, totals.emitted, totals.left, totals.min, totals.max};
-  }
-  if (!probes_.empty())
-    probes_.read(boundary_, fluid(), smoke_ ? &smoke_->smoke() : nullptr, heat(), pressureScale, solids_,
-                 figures_.probes);
-}
-
-SummaryFigures World::summary() const {
-  SummaryFigures summary;
-  summary.steps = stepCount_;
-  summary.cells = boundary_.grid.cells();
-  summary.threads = options_.threads;
-  if (!stepMs_.empty()) {
-    std::vector<float> sorted = stepMs_;
-    std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-    summary.stepMsMedian = sorted[sorted.size() / 2];
-  }
-  summary.divergenceMax = divergenceMax_;
-  if (smoke_) {
-    const Smoke::Totals totals = smoke_->smoke().totals();
-    if (totals.emitted > 0)
-      summary.smokeError = (totals.mass - (totals.emitted - totals.left)) / totals.emitted;
-  }
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(stateHash()));
-  summary.stateHash = text;
-  return summary;
-}
-
-std::uint64_t World::stateHash() const {
-  Fnv1a hash;
-  const Grid& grid = boundary_.grid;
-  auto add = [&](const Field& field, int columns, int rows) {
-    for (int j = 0; j < rows; ++j) hash.update(field.row(j), columns * sizeof(float));
-  };
-  hash.update(&stepCount_, sizeof stepCount_);
-  if (fluid_) {
-    add(fluid_->u(), grid.nx + 1, grid.ny);
-    add(fluid_->v(), grid.nx, grid.ny + 1);
-    add(fluid_->phi(), grid.nx, grid.ny);
-  }
-  if (smoke_)
-    for (int c = 0; c < smoke_->smoke().channels(); ++c) add(smoke_->smoke().value(c), grid.nx, grid.ny);
-  if (heat_) add(heat_->heat().value(), grid.nx, grid.ny);
-  for (int k = 0; k < solids_.count(); ++k) hash.update(&solids_.pose(k), sizeof(Pose));
-  return hash.value();
-}
-
-std::size_t World::bytes() const {
-  std::size_t bytes = 0;
-  if (fluid_)
-    bytes += fluid_->bytes() + boundary_.openX.bytes() + boundary_.openY.bytes() + boundary_.volume.bytes() +
-             boundary_.wallU.bytes() + boundary_.wallV.bytes();
-  if (smoke_) bytes += smoke_->bytes();
-  if (heat_) bytes += heat_->bytes();
-  return bytes;
 }
 
 }  // namespace smokebox

@@ -16,6 +16,7 @@
 #include "world/heat_stage.h"
 #include "world/needs.h"
 #include "world/probes.h"
+#include "world/rigid_stage.h"
 #include "world/smoke_stage.h"
 #include "world/snapshot.h"
 #include "world/solid_scripts.h"
@@ -44,11 +45,14 @@ class World {
   /// Of all steps so far.
   SummaryFigures summary() const;
 
+  /// What a user should be told, once, since the last call: "step 12 (t = 0.1 s): ...".
+  std::vector<std::string> takeNotices();
+
   /// Copies what the layers need that are shown now; the snapshot's view has only these.
   void capture(Snapshot& snapshot) const;
 
-  /// 64-bit hash of the whole state (velocity, pressure, smoke, temperature, poses); equal for any number of
-  /// threads.
+  /// 64-bit hash of the whole state (velocity, pressure, smoke, temperature, poses, bodies); equal for any
+  /// number of threads.
   std::uint64_t stateHash() const;
 
   /// For tests: null in a scene without a fluid.
@@ -57,6 +61,8 @@ class World {
   const SmokeStage* smoke() const { return smoke_ ? &*smoke_ : nullptr; }
   const HeatStage* heat() const { return heat_ ? &*heat_ : nullptr; }
   const SolidScripts& solids() const { return solids_; }
+  /// Null in a scene without bodies, particles and cloth.
+  const RigidStage* rigid() const { return rigid_.get(); }
   std::size_t bytes() const;
 
  private:
@@ -75,7 +81,12 @@ class World {
   void setWalls(double time);
   void fireEvents();
   void adoptSettings(const SetAction& action);
+  void fireRigid(const EventSpec& event, int index);
   void moveSolids();
+  void moveBodies();
+  /// All that parts the fluid: the solids, then the bodies.
+  const std::vector<MovingSolid>& covered() const { return rigid_ ? covered_ : solids_.moving(); }
+  void gatherCovered();
   void coverGrid(bool shapesMoved);
   void addForces();
   void projectFluid();
@@ -97,6 +108,8 @@ class World {
   Needs needs_;
   Boundary boundary_;
   SolidsOnGrid onGrid_;
+  std::unique_ptr<RigidStage> rigid_;
+  std::vector<MovingSolid> covered_;  // only with bodies
   std::optional<Fluid> fluid_;
   std::optional<SmokeStage> smoke_;
   std::optional<HeatStage> heat_;
@@ -109,7 +122,7 @@ class World {
   long stepCount_ = 0;
   StepFigures figures_;
   std::vector<float> stepMs_;
-  double divergenceMax_ = 0;
+  double divergenceMax_ = 0, overlapMax_ = 0;
 };
 
 }  // namespace smokebox

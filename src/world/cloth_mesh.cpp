@@ -1,0 +1,116 @@
+#include "world/cloth_mesh.h"
+
+#include <algorithm>
+
+namespace smokebox {
+
+ClothMesh::ClothMesh(const ClothSpec& spec, std::shared_ptr<const BodyShape> particle, std::uint64_t ignore,
+                     RigidSystem& system)
+    : spec_(spec) {
+  const int columns = spec.columns(), rows = spec.rows(), count = columns * rows;
+  for (int k = 0; k < count; ++k) {
+    BodyDef def;
+    def.shape = particle;
+    def.position = spec.nodeAt(k);
+    def.mass = spec.mass / count;
+    def.bounce = spec.bounce;
+    def.friction = spec.friction;
+    def.linearDamping = spec.linearDamping;
+    def.gravityScale = spec.gravityScale;
+    def.ignore = ignore;
+    def.held = std::binary_search(spec.pinned.begin(), spec.pinned.end(), k);
+    bodies_.push_back(system.add(def));
+  }
+  for (std::vector<Link>* links : {&right_, &up_, &farRight_, &farUp_, &rising_, &falling_})
+    links->resize(count);
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int k = node(i, j);
+      const bool right = i + 1 < columns, up = j + 1 < rows;
+      if (right) right_[k] = join(k, node(i + 1, j), spec.stiffness, spec.tear, system);
+      if (up) up_[k] = join(k, node(i, j + 1), spec.stiffness, spec.tear, system);
+      if (right && up) {
+        rising_[k] = join(k, node(i + 1, j + 1), spec.shear, spec.tear, system);
+        falling_[k] = join(node(i + 1, j), node(i, j + 1), spec.shear, spec.tear, system);
+      }
+      if (i + 2 < columns) farRight_[k] = join(k, node(i + 2, j), spec.bend, kForever, system);
+      if (j + 2 < rows) farUp_[k] = join(k, node(i, j + 2), spec.bend, kForever, system);
+    }
+  whole_.assign(static_cast<std::size_t>(columns - 1) * (rows - 1), 1);
+}
+
+ClothMesh::Link ClothMesh::join(int a, int b, double stiffness, double tear, RigidSystem& system) const {
+  if (stiffness == 0) return {};
+  SpringDef spring;
+  spring.from.body = bodies_[a];
+  spring.to.body = bodies_[b];
+  spring.length = length(spec_.nodeAt(b) - spec_.nodeAt(a));
+  spring.stiffness = stiffness;
+  spring.damping = spec_.damping * stiffness / spec_.stiffness;
+  spring.tear = tear;
+  return {system.addSpring(spring), true};
+}
+
+void ClothMesh::hold(bool held, RigidSystem& system) const {
+  for (const int body : bodies_) {
+    if (!system.isThere(body)) continue;
+    if (held)
+      system.hold(body);
+    else
+      system.release(body);
+  }
+}
+
+void ClothMesh::remove(RigidSystem& system) const {
+  for (const int body : bodies_)
+    if (system.isThere(body)) system.remove(body);
+}
+
+bool ClothMesh::isThere(const RigidSystem& system) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](int body) { return system.isThere(body); });
+}
+
+void ClothMesh::update(RigidSystem& system) {
+  bool torn = false;
+  for (std::vector<Link>* links : {&right_, &up_, &farRight_, &farUp_, &rising_, &falling_})
+    for (Link& link : *links) {
+      if (!link.there || system.springIsThere(link.spring)) continue;
+      link.there = false;
+      torn = true;
+    }
+  if (!torn) return;
+  const int columns = spec_.columns(), rows = spec_.rows();
+  auto drop = [&](Link& link) {
+    if (!link.there) return;
+    system.removeSpring(link.spring);
+    link.there = false;
+  };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int k = node(i, j);
+      if (i + 2 < columns && !(right_[k].there && right_[k + 1].there)) drop(farRight_[k]);
+      if (j + 2 < rows && !(up_[k].there && up_[k + columns].there)) drop(farUp_[k]);
+      if (i + 1 < columns && j + 1 < rows)
+        whole_[i + static_cast<std::size_t>(j) * (columns - 1)] = cellIsWhole(i, j);
+    }
+}
+
+bool ClothMesh::cellIsWhole(int i, int j) const {
+  const int k = node(i, j), columns = spec_.columns();
+  if (spec_.shear > 0 && !(rising_[k].there && falling_[k].there)) return false;
+  return (right_[k].there || right_[k + columns].there) && (up_[k].there || up_[k + 1].there);
+}
+
+void ClothMesh::capture(const RigidSystem& system, int index, ClothPicture& picture) const {
+  picture.name = spec_.name;
+  picture.index = index;
+  picture.columns = spec_.columns();
+  picture.rows = spec_.rows();
+  picture.radius = spec_.radius;
+  picture.color = spec_.color;
+  picture.whole = whole_;
+  picture.positions.resize(bodies_.size());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) picture.positions[k] = system.position(bodies_[k]);
+}
+
+}  // namespace smokebox
