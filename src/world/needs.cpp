@@ -36,6 +36,13 @@ bool reachesLayer(const std::string& path, const std::string& name, const std::s
   return next >= steps.size() || steps[next] == option;
 }
 
+bool eventSetsDragOfBodies(const SceneSpec& spec) {
+  return std::any_of(spec.events.begin(), spec.events.end(), [](const EventSpec& event) {
+    const auto* set = std::get_if<SetAction>(&event.action);
+    return set && set->path.starts_with("bodies.") && set->path.ends_with(".drag");
+  });
+}
+
 bool isOff(const std::string& value) { return value == "false" || value == "no" || value == "off"; }
 
 }  // namespace
@@ -91,7 +98,7 @@ Needs needsOf(const SceneSpec& spec) {
   needs.parts.forced = needs.parts.viscous || needs.parts.confined || needs.buoyancy || needs.heatRises ||
                        anyEvent<ForceAction>(spec);
   needs.parts.inviscidDrag = (spec.fluid.viscosity == 0 || eventSets(spec, "fluid.viscosity")) &&
-                             (eventSets(spec, "solids") || eventSets(spec, "bodies") ||
+                             (eventSets(spec, "solids") || eventSetsDragOfBodies(spec) ||
                               std::any_of(spec.solids.begin(), spec.solids.end(),
                                           [](const SolidSpec& solid) { return solid.drag > 0; }) ||
                               std::any_of(spec.bodies.begin(), spec.bodies.end(), [](const BodySpec& body) {
