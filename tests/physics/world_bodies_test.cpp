@@ -380,7 +380,7 @@ TEST(WorldBodies, ImpactsStayInPicturesForAWhile) {
   run(world, 0.6);
   world.capture(snapshot);
   ASSERT_EQ(snapshot.touches.size(), 1u);
-  EXPECT_NEAR(snapshot.touches[0].point.y, 0, 1e-3);
+  EXPECT_NEAR(snapshot.touches[0].point.y, 0, 0.01);  // it may be anywhere within the step
   EXPECT_NEAR(snapshot.touches[0].approach, 1, 1e-6);
   EXPECT_NEAR(snapshot.touches[0].age, 0.1, 0.02);
   run(world, 0.9);
