@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "rigid/clean_outlines.h"
 
 namespace smokebox {
 namespace {
@@ -94,34 +95,72 @@ double smoothTolerance(const PlacedShape& part, double tolerance) {
   return std::min(tolerance, std::max(ellipse->radii.x, ellipse->radii.y) * step * step / 3);
 }
 
-std::vector<ConvexPiece> piecesOf(const std::vector<PlacedShape>& parts, double tolerance) {
-  std::vector<ConvexPiece> pieces;
-  std::vector<Outline> straight;
-  for (const PlacedShape& part : parts) {
-    const std::vector<Vec2> core = roundCore(part);
-    if (!core.empty()) {
-      pieces.push_back(makePiece(core, roundRadius(part)));
-      continue;
-    }
-    for (Outline& outline : outlinesOf(part, smoothTolerance(part, tolerance)))
-      straight.push_back(std::move(outline));
-  }
-  if (!straight.empty())
-    for (ConvexPiece& piece : convexPieces(merged(straight))) pieces.push_back(std::move(piece));
-  return pieces;
-}
-
-/// From each edge of the outline to the piece's farthest corner.
+/// From each edge of a convex core to its farthest corner, rounding included.
 double smallestWidth(const ConvexPiece& piece) {
   if (piece.points.size() < 3) return 2 * piece.radius;
   double smallest = 1e300;
   for (std::size_t k = 0; k < piece.normals.size(); ++k) {
-    if (piece.inner[k]) continue;
     double width = 0;
     for (Vec2 p : piece.points) width = std::max(width, dot(piece.normals[k], piece.points[k] - p));
     smallest = std::min(smallest, width);
   }
   return smallest + 2 * piece.radius;
+}
+
+/// How deep the region is behind the middle of an edge, where that is least. Not the pieces' widths: these
+/// are cut anyhow, and a sliver of a thick body is no danger. Edges below a millionth of the extent do not
+/// count.
+double smallestDepth(const std::vector<Outline>& outlines, double extent) {
+  struct Edge {
+    Vec2 from, along;
+  };
+  std::vector<Edge> edges;
+  for (const Outline& outline : outlines)
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      edges.push_back({outline[k], outline[k + 1 < outline.size() ? k + 1 : 0] - outline[k]});
+  const std::size_t stride = 1 + edges.size() / 4000;  // a sample of very many
+  double smallest = extent;
+  for (std::size_t i = 0; i < edges.size(); i += stride) {
+    const double size = length(edges[i].along);
+    if (size <= 1e-6 * extent) continue;
+    const Vec2 middle = edges[i].from + 0.5 * edges[i].along,
+               inward = (1 / size) * perpendicular(edges[i].along);
+    for (std::size_t j = 0; j < edges.size(); ++j) {
+      const Vec2 from = edges[j].from - middle;
+      const double a = cross(inward, from), b = cross(inward, from + edges[j].along);
+      if (j == i || a > 0 || b <= 0) continue;  // the far side runs from right to left
+      const double depth = dot(inward, from + (a / (a - b)) * edges[j].along);
+      if (depth > 1e-6 * extent) smallest = std::min(smallest, depth);
+    }
+  }
+  return smallest;
+}
+
+struct CutShape {
+  std::vector<ConvexPiece> pieces;
+  double thinnest = 1e300;
+};
+
+CutShape cutShape(const std::vector<PlacedShape>& parts, double tolerance) {
+  CutShape cut;
+  std::vector<Outline> straight;
+  for (const PlacedShape& part : parts) {
+    const std::vector<Vec2> core = roundCore(part);
+    if (!core.empty()) {
+      cut.pieces.push_back(makePiece(core, roundRadius(part)));
+      cut.thinnest = std::min(cut.thinnest, 2 * roundRadius(part));
+      continue;
+    }
+    for (Outline& outline : outlinesOf(part, smoothTolerance(part, tolerance)))
+      straight.push_back(std::move(outline));
+  }
+  if (straight.empty()) return cut;
+  straight = merged(straight);
+  std::vector<ConvexPiece> pieces = convexPieces(straight);
+  cut.thinnest = std::min(cut.thinnest, pieces.size() == 1 ? smallestWidth(pieces[0])
+                                                           : smallestDepth(straight, extentOf(straight)));
+  for (ConvexPiece& piece : pieces) cut.pieces.push_back(std::move(piece));
+  return cut;
 }
 
 /// With (0, 0) at `origin` if there is one, else at the centre of mass.
@@ -138,12 +177,11 @@ BodyShape makeShape(const PlacedShape& shape, double tolerance, const Vec2* orig
     for (Vec2& p : outline) p = p + shift;
   body.mass.centre = body.mass.centre + shift;
   for (PlacedShape& part : parts) part.pose.position = part.pose.position + shift;
-  body.pieces = piecesOf(parts, tolerance);
-  body.thinnest = 1e300;
-  for (const ConvexPiece& piece : body.pieces) {
+  CutShape cut = cutShape(parts, tolerance);
+  body.pieces = std::move(cut.pieces);
+  body.thinnest = cut.thinnest;
+  for (const ConvexPiece& piece : body.pieces)
     for (Vec2 p : piece.points) body.reach = std::max(body.reach, length(p) + piece.radius);
-    body.thinnest = std::min(body.thinnest, smallestWidth(piece));
-  }
   body.tree = PieceTree(body.pieces);
   return body;
 }

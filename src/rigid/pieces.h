@@ -17,7 +17,8 @@ struct BodyShape {
   MassProperties mass;  // of unit density; exact for circles, capsules and ellipses, and unions of such that
                         // do not overlap, else of the merged outlines
   double reach = 0;     // from (0, 0) to the farthest point
-  double thinnest = 0;  // smallest width of a piece
+  double thinnest = 0;  // smallest width of a convex or round part; of others the smallest depth behind the
+                        // middle of an edge
   PieceTree tree;
 };
 

@@ -168,6 +168,28 @@ TEST(RigidPieces, SolidsKeepTheirOwnOrigin) {
   EXPECT_NEAR(body.thinnest, 1, 1e-12);
 }
 
+TEST(RigidPieces, ThinnestIsTheBodysNotThePieces) {
+  // Slivers of a thick body do not make it thin; a thin arm, a plate's rim beside a hole or a thin box do.
+  Vec2 offset;
+  Outline hills{{10, -1}, {10, 0}};
+  Dice dice(8);
+  for (double x = 9.9; x > -10; x -= 0.1) hills.push_back({x, dice.between(-0.01, 0.01)});
+  hills.push_back({-10, -1});
+  const auto thinnest = [&](const Shape& shape) { return makeBodyShape({shape, {}}, 1e-3, offset).thinnest; };
+  EXPECT_GT(thinnest(PolygonShape{hills}), 0.4);
+  EXPECT_NEAR(thinnest(PolygonShape{{{0, 0}, {2, 0}, {2, 0.02}, {1, 0.02}, {1, 2}, {0, 2}}}), 0.02, 1e-12);
+  UnionShape frame;
+  for (int k = 0; k < 2; ++k) {
+    frame.parts.push_back({BoxShape{{2, 0.1}}, {{0, k - 0.5}, 0}});
+    frame.parts.push_back({BoxShape{{0.3, 1}}, {{1.7 * (k - 0.5), 0}, 0}});
+  }
+  EXPECT_NEAR(thinnest(frame), 0.1, 1e-6);
+  EXPECT_NEAR(thinnest(BoxShape{{3, 0.01}}), 0.01, 1e-15);
+  EXPECT_NEAR(thinnest(RegularShape{3, 1}), 1.5, 1e-12);
+  frame.parts.push_back({CapsuleShape{1, 0.02}, {}});
+  EXPECT_NEAR(thinnest(frame), 0.04, 1e-12);
+}
+
 TEST(RigidPieces, SpiralsOfManyCornersAreCovered) {
   // A spiral of 8,000 corners, the slowest kind, is covered by few pieces.
   const auto spiral = [](int corners) {
