@@ -22,6 +22,7 @@ struct Contact {
   int count = 0;
   double friction = 0, bounce = 0;
   double approach = 0;  // fastest at which its points met in this step, m/s
+  bool struck = false;  // had an impact in this sub-step
   double total = 0;     // N s along the normal in this step, impacts too
   ContactPoint points[2];
 };

@@ -46,21 +46,22 @@ inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 
 }  // namespace
 
-void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& contacts,
-                          std::vector<int>& rest) {
+void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest,
+                          Vec2 down) {
   const int count = static_cast<int>(contacts.size());
   used_.assign(bodies.count(), 0);
   colour_.resize(count);
   place_.assign(count, -1);
   start_.assign(kColours + 1, 0);
   rest.clear();
-  // Those that bear something choose first: the order of a sweep does not change with what is merely near.
-  for (const bool bearing : {true, false})
+  // First what bears along gravity, then what bears sideways, last what is merely near: a sweep in this order
+  // leaves the least undone, and does not change with what comes near.
+  for (const int rank : {0, 1, 2})
     for (int k = 0; k < count; ++k) {
       const Contact& c = contacts[k];
-      const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0 || c.points[0].gap < 1e-3 ||
-                         c.points[1].gap < 1e-3;
-      if (bears != bearing) continue;
+      const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0;
+      const double along = dot(c.normal, down);
+      if (rank != (!bears ? 2 : along * along > 0.5 ? 0 : 1)) continue;
       const bool movesA = bodies.moves(c.a), movesB = bodies.moves(c.b);
       const std::uint64_t used = (movesA ? used_[c.a] : 0) | (movesB ? used_[c.b] : 0);
       if (~used == 0) {

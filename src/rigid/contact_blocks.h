@@ -17,8 +17,9 @@ class ContactBlocks {
   static constexpr int kLanes = 4;
   typedef double Lanes __attribute__((vector_size(32)));
 
-  /// Colours the contacts and lays them out. Those that find no colour are listed in `rest`.
-  void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest);
+  /// Colours the contacts and lays them out; `down`: along gravity, of length 1, or (0, 0). Those that find
+  /// no colour are listed in `rest`.
+  void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest, Vec2 down);
   bool empty() const { return blocks_.empty(); }
   std::size_t size() const { return blocks_.size(); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigid/collide.h"
 #include "rigid/contact_sweeps.h"
 
 namespace smokebox {
@@ -10,6 +11,13 @@ namespace smokebox {
 namespace {
 // Points of one contact that close within this share of a sub-step of each other strike together.
 constexpr double kTogether = 0.02;
+
+/// What displacements make of a point's gap.
+double gapOf(const std::vector<Motion>& way, const Contact& contact, const ContactPoint& point) {
+  const Motion &wa = way[contact.a], &wb = way[contact.b];
+  return dot(contact.normal, wb.linear() - wa.linear()) + wb.turn * cross(point.armB, contact.normal) -
+         wa.turn * cross(point.armA, contact.normal);
+}
 }  // namespace
 
 Vec2 Impacts::acceleration(const Bodies& bodies, const Contact& contact) const {
@@ -38,8 +46,9 @@ Impacts::Approach Impacts::approach(const Bodies& bodies, const std::vector<Moti
 }
 
 void Impacts::schedule(const Bodies& bodies, const std::vector<Motion>& way,
-                       const std::vector<Contact*>& contacts, int k, double h, double least, double now) {
+                       const std::vector<Contact*>& contacts, int k, double h, double least) {
   const Contact& contact = *contacts[k];
+  const double now = std::max(struckAt_[contact.a], struckAt_[contact.b]);
   ++stamps_[k];
   double first = h;
   bool any = false;
@@ -68,30 +77,98 @@ void Impacts::push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB,
   one(contact.b, armB, impulse);
 }
 
-void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, double now,
+Frame Impacts::frameAt(const Bodies& bodies, const std::vector<Motion>& way, int body, double h,
+                       double time) const {
+  const Motion &m = bodies.moved[body], &w = way[body], &v = bodies.velocity[body];
+  // Gravity bends the way within the sub-step; at its start and its end the bend is 0.
+  const double bend = bodies.moves(body) ? 0.5 * bodies.def[body].gravityScale * time * (time - h) : 0;
+  return {bodies.position[body] + m.linear() + w.linear() + time * v.linear() + bend * gravity_,
+          turnedBy(bodies.turn[body], m.turn + w.turn + time * v.turn)};
+}
+
+bool Impacts::meet(const Bodies& bodies, const std::vector<Motion>& way, Contact& contact, double h,
+                   double& now) const {
+  constexpr int kRounds = 4;
+  const BodyShape &sa = *bodies.def[contact.a].shape, &sb = *bodies.def[contact.b].shape;
+  const ConvexPiece &pa = sa.pieces[contact.pieceA], &pb = sb.pieces[contact.pieceB];
+  const double margin = 0.1 * std::min(sa.thinnest, sb.thinnest), close = 1e-9 * margin;
+  const double earliest = std::max(struckAt_[contact.a], struckAt_[contact.b]);
+  Manifold manifold;
+  Contact met = contact;
+  for (int round = 0; round < kRounds; ++round) {
+    const Frame fa = frameAt(bodies, way, contact.a, h, now);
+    Frame fb = frameAt(bodies, way, contact.b, h, now);
+    fb.position = fb.position + contact.shift;
+    if (!collide(pa, fa, pb, fb, margin, manifold)) return false;
+    met.normal = manifold.normal;
+    met.count = manifold.count;
+    const double late = dot(acceleration(bodies, met), met.normal) * (now - 0.5 * h);
+    double gap = margin, speed = 0;
+    for (int k = 0; k < met.count; ++k) {
+      ContactPoint& p = met.points[k];
+      p.armA = manifold.points[k].point - fa.position;
+      p.armB = manifold.points[k].point - fb.position;
+      p.gap = manifold.points[k].gap;
+      p.feature = manifold.points[k].feature;
+      const double v = partingSpeed(bodies, met, p) + late;
+      if (v < 0 && p.gap < gap) {
+        gap = p.gap;
+        speed = v;
+      }
+    }
+    if (speed == 0) return false;
+    const double then = std::clamp(now - gap / speed, earliest, h);
+    const bool settled = std::abs(gap) <= close || then == now;
+    if (settled || round == kRounds - 1) break;
+    now = then;
+  }
+  contact = met;
+  setMasses(bodies, contact);
+  return true;
+}
+
+void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
                      std::vector<Motion>& way) {
   const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
+  if (!meet(bodies, way, contact, h, now)) {
+    // They pass each other by: nothing holds them in this sub-step.
+    for (int k = 0; k < contact.count; ++k) {
+      ContactPoint& p = contact.points[k];
+      const double closing = std::max(-partingSpeed(bodies, contact, p), 0.0);
+      p.gap = 2 * h * closing - gapMoved(bodies, contact, p);
+    }
+    return;
+  }
   const Vec2 n = contact.normal, tangent = perpendicular(n);
   const double late = dot(acceleration(bodies, contact), n) * (now - 0.5 * h);
-  const Vec2 xa = bodies.positionNow(contact.a) + way[contact.a].linear() +
-                  now * bodies.velocity[contact.a].linear(),
-             xb = bodies.positionNow(contact.b) + way[contact.b].linear() +
-                  now * bodies.velocity[contact.b].linear() + contact.shift;
 
-  // The points that strike now, with arms from where the centres of mass are at this moment to one common
-  // point: so that the two impulses have no moment together.
+  const Vec2 xa = frameAt(bodies, way, contact.a, h, now).position,
+             xb = frameAt(bodies, way, contact.b, h, now).position + contact.shift;
+
+  // The points that strike now, with arms from where the centres of mass are at this moment.
   ContactPoint struck[2];
   int count = 0;
   for (int p = 0; p < contact.count; ++p) {
-    const ContactPoint& point = contact.points[p];
-    const Approach at = approach(bodies, way, contact, point, h, now);
-    if (at.speed >= -least || at.time > now + kTogether * h) continue;
-    const Vec2 slip = 0.5 * ((xb - xa) - (point.armA - point.armB));
-    struck[count] = point;
-    struck[count].armA = point.armA + slip;
-    struck[count++].armB = point.armB - slip;
+    ContactPoint& point = contact.points[p];
+    const double speed = partingSpeed(bodies, contact, point) + late;
+    if (speed >= -least || point.gap + kTogether * h * speed > 0) continue;
+    struck[count++] = point;
   }
-  if (count == 0) return;
+  // For the contact solver, whose impulses act where the bodies' straight ways of after the impacts begin:
+  // gaps and arms that come to the same places now.
+  auto settle = [&] {
+    const Vec2 atA = bodies.positionNow(contact.a) + way[contact.a].linear(),
+               atB = bodies.positionNow(contact.b) + way[contact.b].linear() + contact.shift;
+    for (int p = 0; p < contact.count; ++p) {
+      ContactPoint& point = contact.points[p];
+      const double speed = partingSpeed(bodies, contact, point);
+      point.armA = point.armA + (xa - atA);
+      point.armB = point.armB + (xb - atB);
+      point.gap -= now * speed + gapMoved(bodies, contact, point) + gapOf(way, contact, point);
+    }
+    setMasses(bodies, contact);
+  };
+  if (count == 0) return settle();
 
   auto response = [&](const ContactPoint& p, Vec2 d, const ContactPoint& q, Vec2 e) {
     return dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
@@ -128,7 +205,6 @@ void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
       pushNormal(struck[k], normal[k]);
     }
   }
-  if (contact.friction == 0) return;
   // After the normal impulses: friction at most stops the sliding, so it can only take energy.
   for (int k = 0; k < count; ++k) {
     const Vec2 slip =
@@ -137,7 +213,11 @@ void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
     const double stop = -dot(tangent, slip) / response(struck[k], tangent, struck[k], tangent);
     push(bodies, contact, struck[k].armA, struck[k].armB, std::clamp(stop, -most, most) * tangent, now, way);
   }
+  contact.struck = true;
+  settle();
 }
+
+void Impacts::begin(int bodies) { struckAt_.assign(bodies, 0); }
 
 void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
                   std::vector<Motion>& way) {
@@ -146,7 +226,7 @@ void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double 
   const int n = static_cast<int>(contacts.size());
   heap_.clear();
   stamps_.assign(n, 0);
-  for (int k = 0; k < n; ++k) schedule(bodies, way, contacts, k, h, least, 0);
+  for (int k = 0; k < n; ++k) schedule(bodies, way, contacts, k, h, least);
   if (heap_.empty()) return;
 
   firstAt_.assign(bodies.count(), -1);
@@ -165,12 +245,15 @@ void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double 
     heap_.pop_back();
     if (stamps_[event.contact] != event.stamp) continue;
     Contact& contact = *contacts[event.contact];
-    strike(bodies, contact, h, least, event.time, way);
+    double now = event.time;
+    strike(bodies, contact, h, least, now, way);
+    for (const int body : {contact.a, contact.b})
+      if (bodies.moves(body)) struckAt_[body] = std::max(struckAt_[body], now);
     ++count_;
     for (const int body : {contact.a, contact.b}) {
       if (!bodies.moves(body)) continue;
       for (int at = firstAt_[body]; at >= 0; at = at % 2 == 0 ? nextA_[at / 2] : nextB_[at / 2])
-        schedule(bodies, way, contacts, at / 2, h, least, event.time);
+        schedule(bodies, way, contacts, at / 2, h, least);
     }
   }
 }

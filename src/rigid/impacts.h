@@ -17,10 +17,14 @@ namespace smokebox {
 
 class Impacts {
  public:
+  /// Before the first run of a sub-step.
+  void begin(int bodies);
   /// `contacts`: those that may bounce. Slower approaches than `least` (m/s) are left to the contact solver.
   /// Adds what the impacts change of the bodies' ways to `way`.
   void run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
            std::vector<Motion>& way);
+  /// By body: moment of its last impact within the sub-step.
+  const std::vector<double>& moments() const { return struckAt_; }
   long count() const { return count_; }  // of the last run
 
  private:
@@ -37,14 +41,22 @@ class Impacts {
   Approach approach(const Bodies& bodies, const std::vector<Motion>& way, const Contact& contact,
                     const ContactPoint& point, double h, double now) const;
   void schedule(const Bodies& bodies, const std::vector<Motion>& way, const std::vector<Contact*>& contacts,
-                int k, double h, double least, double now);
-  void strike(Bodies& bodies, Contact& contact, double h, double least, double now, std::vector<Motion>& way);
+                int k, double h, double least);
+  /// `now`: what was expected comes in, the moment of the impact itself goes out.
+  void strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
+              std::vector<Motion>& way);
+  Frame frameAt(const Bodies& bodies, const std::vector<Motion>& way, int body, double h, double time) const;
+  /// Finds the moment at which the two pieces really meet, near `now`, and their contact then; false: they do
+  /// not.
+  bool meet(const Bodies& bodies, const std::vector<Motion>& way, Contact& contact, double h,
+            double& now) const;
   void push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse, double time,
             std::vector<Motion>& way);
   Vec2 acceleration(const Bodies& bodies, const Contact& contact) const;
 
   Vec2 gravity_;
   long count_ = 0;
+  std::vector<double> struckAt_;
   std::vector<Event> heap_;
   std::vector<int> stamps_;
   std::vector<int> firstAt_, nextA_, nextB_;  // lists of contacts at each body

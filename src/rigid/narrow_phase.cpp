@@ -13,7 +13,7 @@ namespace {
 
 // A pair is calm while its bodies move against each other by less than this share of the thinner one's width
 // in a step (less if they bounce): the contact's normal and corners then still hold at its end.
-constexpr double kCalm = 0.25, kCalmBouncing = 0.05;
+constexpr double kCalm = 0.25, kCalmTurning = 0.05, kCalmBouncing = 0.01;
 constexpr double kCalmTurn = 0.1;  // rad
 // A body may stray by this share of its width from the way expected of it.
 constexpr double kStray = 0.02;
@@ -46,6 +46,38 @@ double thinner(const Bodies& bodies, int a, int b) {
   return std::min(bodies.def[a].shape->thinnest, bodies.def[b].shape->thinnest);
 }
 
+bool touching(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const Frame& fb, double margin) {
+  Manifold manifold;
+  return collide(a, fa, b, fb, margin, manifold);
+}
+
+/// The share of their motion that two pieces can make before they overlap by more than a quarter of `thin`:
+/// conservative advancement (Mirtich 1996) on the signed gap, for no point moves by more than `most`. Ends
+/// after a bounded number of rounds, at a share that is safe.
+double safeShare(const ConvexPiece& a, const Sweep& sa, const ConvexPiece& b, const Sweep& sb, double thin,
+                 double most) {
+  constexpr int kRounds = 64;
+  const double deep = 0.25 * thin;
+  double share = 0;
+  if (!touching(a, sa.start, b, sb.start, deep)) {
+    const auto hit = timeOfImpact(a, sa, b, sb, kTarget * thin);
+    if (!hit) return 1;
+    share = *hit;
+  }
+  Manifold manifold;
+  for (int round = 0; round < kRounds; ++round) {
+    double gap = deep;
+    if (collide(a, frameAt(sa, share), b, frameAt(sb, share), deep, manifold)) {
+      gap = manifold.points[0].gap;
+      if (manifold.count == 2) gap = std::min(gap, manifold.points[1].gap);
+    }
+    if (gap < -0.8 * deep) return share;
+    share += (gap + deep) / most;
+    if (share >= 1) return 1;
+  }
+  return share;
+}
+
 /// Distance of the point from the box around a body's pieces.
 double distanceFrom(const BodyShape& shape, const Frame& frame, Vec2 point) {
   const PieceTree::Node& box = shape.tree.nodes()[0];
@@ -70,11 +102,21 @@ bool surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double ma
 }  // namespace
 
 void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
-                       bool swept, const Contact* old, int oldCount, std::vector<Contact>& found) {
+                       bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
+                       const Later& later) {
   const BodyDef &a = bodies.def[key.a], &b = bodies.def[key.b];
-  const Frame fa = bodies.frameNow(key.a);
-  Frame fb = bodies.frameNow(key.b);
+  auto ahead = [&](int body, const Motion& struck) -> Motion {
+    const Motion& v = bodies.velocity[body];
+    return {struck.x + later.time * v.x, struck.y + later.time * v.y, struck.turn + later.time * v.turn};
+  };
+  const Motion aheadA = ahead(key.a, later.struckA), aheadB = ahead(key.b, later.struckB);
+  Frame fa = bodies.frameNow(key.a), fb = bodies.frameNow(key.b);
+  if (later.time > 0) {
+    fa = {fa.position + aheadA.linear(), turnedBy(fa.turn, aheadA.turn)};
+    fb = {fb.position + aheadB.linear(), turnedBy(fb.turn, aheadB.turn)};
+  }
   fb.position = fb.position + shift;
+  const double rest = h - later.time;
   findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
   Manifold manifold;
   for (const PiecePair& pieces : pieces_) {
@@ -88,7 +130,7 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
       const double target = kTarget * thinner(bodies, key.a, key.b);
       if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
         const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
-        const Sweep sa{fa, h * va.linear(), h * va.turn}, sb{fb, h * vb.linear(), h * vb.turn};
+        const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
         const auto hit = timeOfImpact(pa, sa, pb, sb, target);
         if (!hit) continue;
         share = *hit;
@@ -117,7 +159,11 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
       const double speed = partingSpeed(bodies, contact, p);
       contact.approach = std::max(contact.approach, -speed);
       // As of the step's start, by the same straight-line rule that brings it up to date.
-      p.gap = manifold.points[k].gap - share * h * speed - gapMoved(bodies, contact, p);
+      p.gap = manifold.points[k].gap - share * rest * speed - gapMoved(bodies, contact, p) -
+              dot(contact.normal, aheadB.linear() - aheadA.linear()) -
+              aheadB.turn * cross(p.armB, contact.normal) + aheadA.turn * cross(p.armA, contact.normal);
+      p.armA = p.armA + later.time * bodies.velocity[key.a].linear();
+      p.armB = p.armB + later.time * bodies.velocity[key.b].linear();
     }
     setMasses(bodies, contact);
     for (int o = 0; o < oldCount; ++o) {
@@ -161,7 +207,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const double way = relativeSpeed(bodies, a, b) * dt;
     const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
     const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
-    if (way > (bounces ? kCalmBouncing : kCalm) * thin || (way > kCalmBouncing * thin && turn > kCalmTurn)) {
+    if (way > (bounces ? kCalmBouncing : kCalm) * thin || (way > kCalmTurning * thin && turn > kCalmTurn)) {
       livelyPair_[k] = 1;
       makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
       continue;
@@ -182,7 +228,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     pair.travelled = travelled_[a] + travelled_[b];
     if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), pair.margin)) continue;
     find(bodies, pair.key, broad.shiftOf(pair.key), pair.margin, h_, false, memory_.data() + pair.first,
-         pair.count, calm_);
+         pair.count, calm_, {});
   }
   calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
   for (Contact& contact : calm_) contact.total = 0;
@@ -196,7 +242,8 @@ void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, i
   pairs_.push_back(made);
 }
 
-void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double h) {
+void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double h,
+                          const std::vector<double>* since) {
   next_.clear();
   for (LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
@@ -211,8 +258,40 @@ void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double 
         pair.clear = margin - near;
       } else {
         find(bodies, pair.key, broad.shiftOf(pair.key), pair.swept ? way : near, h, pair.swept,
-             lively_.data() + pair.first, pair.count, next_);
+             lively_.data() + pair.first, pair.count, next_,
+             {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
       }
+    }
+    pair.first = first;
+    pair.count = static_cast<int>(next_.size()) - first;
+  }
+  lively_.swap(next_);
+}
+
+void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
+                                      const std::vector<Motion>& struck,
+                                      const std::vector<double>& struckAt) {
+  next_.clear();
+  auto wasStruck = [&](int body) {
+    const Motion& m = struck[body];
+    return m.x != 0 || m.y != 0 || m.turn != 0;
+  };
+  for (LivelyPair& pair : pairs_) {
+    const int a = pair.key.a, b = pair.key.b;
+    const auto begin = lively_.begin() + pair.first, end = begin + pair.count;
+    const int first = static_cast<int>(next_.size());
+    if ((!wasStruck(a) && !wasStruck(b)) ||
+        std::any_of(begin, end, [](const Contact& c) { return c.struck; })) {
+      next_.insert(next_.end(), begin, end);
+    } else {
+      const double thin = thinner(bodies, a, b), way = relativeSpeed(bodies, a, b) * h;
+      pair.swept = way > kSwept * thin;
+      pair.clear = 0;
+      const double margin = pair.swept ? way : way + kNear * thin;
+      const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());
+      if (!surelyApart(bodies, pair.key, broad.shiftOf(pair.key), reach + way))
+        find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept, lively_.data() + pair.first,
+             pair.count, next_, {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
     }
     pair.first = first;
     pair.count = static_cast<int>(next_.size()) - first;
@@ -258,35 +337,39 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
   return any;
 }
 
-void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, std::vector<Motion>& way) {
+void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, double h,
+                              const std::vector<double>* since, std::vector<Motion>& way) {
   for (const LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
     const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
-    const Motion &wa = way[a], &wb = way[b];
     const double thin = thinner(bodies, a, b);
+    // What lies ahead after the last impact; before it the ways were other ones.
+    const double past = since ? std::max((*since)[a], (*since)[b]) / h : 0;
+    auto part = [&](int body, double share) -> Motion {
+      const Motion& w = way[body];
+      return {share * w.x, share * w.y, share * w.turn};
+    };
+    auto frame = [&](int body) -> Frame {
+      const Frame now = bodies.frameNow(body);
+      const Motion m = part(body, past);
+      return {now.position + m.linear(), turnedBy(now.turn, m.turn)};
+    };
+    const Motion wa = part(a, 1 - past), wb = part(b, 1 - past);
     const double most = length(wa.linear() - wb.linear()) + std::abs(wa.turn) * turningReach(sa) +
                         std::abs(wb.turn) * turningReach(sb);
     if (most <= kSwept * thin) continue;
-    const Frame fa = bodies.frameNow(a);
-    Frame fb = bodies.frameNow(b);
+    const Frame fa = frame(a);
+    Frame fb = frame(b);
     fb.position = fb.position + broad.shiftOf(pair.key);
     findPiecePairs(sa, fa, sb, fb, most, pieces_);
     double first = 1;
-    const double target = 0.5 * kTarget * thin;
-    for (const PiecePair& pieces : pieces_) {
-      const ConvexPiece &pa = sa.pieces[pieces.a], &pb = sb.pieces[pieces.b];
-      Manifold manifold;
-      if (collide(pa, fa, pb, fb, 1.1 * target, manifold)) continue;  // they touch: a matter of impulses
-      const auto hit = timeOfImpact(pa, {fa, wa.linear(), wa.turn}, pb, {fb, wb.linear(), wb.turn}, target);
-      if (hit) first = std::min(first, *hit);
-    }
+    for (const PiecePair& pieces : pieces_)
+      first = std::min(first, safeShare(sa.pieces[pieces.a], {fa, wa.linear(), wa.turn}, sb.pieces[pieces.b],
+                                        {fb, wb.linear(), wb.turn}, thin, most));
     if (first >= 1) continue;
-    for (const int body : {a, b}) {
-      if (!bodies.moves(body)) continue;
-      way[body].x *= first;
-      way[body].y *= first;
-      way[body].turn *= first;
-    }
+    const double share = past + (1 - past) * first;
+    for (const int body : {a, b})
+      if (bodies.moves(body)) way[body] = part(body, share);
   }
 }
 

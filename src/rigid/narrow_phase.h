@@ -18,14 +18,20 @@ class NarrowPhase {
  public:
   /// Sorts the pairs into calm and lively, and finds the calm contacts for a step of `dt`.
   void beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps);
-  /// Finds the lively contacts for the coming sub-step, with the impulses of the last one.
-  void refresh(const Bodies& bodies, const BroadPhase& broad, double h);
+  /// Finds the lively contacts for the coming sub-step, with the impulses of the last one; `since`: by body,
+  /// the moment within it from which its way is straight (null: its start).
+  void refresh(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since);
+  /// After impacts, which have changed the bodies' ways by `struck`: looks again at the lively pairs that
+  /// have had none themselves.
+  void refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
+                           const std::vector<Motion>& struck, const std::vector<double>& struckAt);
   /// Bodies that would leave the way that was expected of them if they moved by `way` now: from then on their
   /// pairs are lively. True if there are any (refresh again).
   bool stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
             ContactBlocks& blocks, double timeLeft);
   /// Pairs that would pass through each other by moving `way`: both are stopped where they meet.
-  void stopPassing(const Bodies& bodies, const BroadPhase& broad, std::vector<Motion>& way);
+  void stopPassing(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
+                   std::vector<Motion>& way);
   /// A sub-step has passed.
   void advance() { elapsed_ += h_; }
   /// Remembers the contacts and their impulses for the next step.
@@ -51,8 +57,14 @@ class NarrowPhase {
     Motion velocity;  // at the step's start
     double room = 0;  // how far its points may be from where that takes them
   };
+  /// The moment within the sub-step from which contacts are looked for, and what impacts before it have
+  /// changed of the two bodies' ways.
+  struct Later {
+    double time = 0;
+    Motion struckA, struckB;
+  };
   void find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
-            const Contact* old, int oldCount, std::vector<Contact>& found);
+            const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
 
   std::vector<Contact> calm_, lively_, next_, memory_;

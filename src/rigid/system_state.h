@@ -27,6 +27,8 @@ struct RigidSystem::State {
   void setInverse(int body);
   double sweep(double h, bool first);
   void findCalmShare();
+  void findWays(double h, bool withStruck);
+  void impacts(double h);
   void warmStartAll(double h);
   void collectTouches(const std::vector<Contact>& contacts);
   void wrap(int body);
@@ -49,7 +51,7 @@ struct RigidSystem::State {
   std::vector<Motion> start;      // velocities before the contact solver
   std::vector<Motion> calmShare;  // what the calm contacts added to them in the last sub-step
   bool shareKnown = false;
-  bool anyStruck = false;
+  bool anyStruck = false, mayBounce = false;
   std::vector<Motion> way;  // all of that
 
   BroadPhase broad;

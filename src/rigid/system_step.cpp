@@ -92,9 +92,12 @@ void RigidSystem::State::beginStep(double step) {
   touches.clear();
   broad.update(bodies, gravity, dt);
   narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
-  blocks.build(bodies, narrow.calm(), uncoloured);
+  const double pull = length(gravity);
+  blocks.build(bodies, narrow.calm(), uncoloured, pull > 0 ? (1 / pull) * gravity : Vec2{});
   spare.clear();
   for (const int k : uncoloured) spare.push_back(narrow.calm()[k]);
+  mayBounce = false;
+  for (int b = 0; b < bodies.count(); ++b) mayBounce |= bodies.there[b] && bodies.def[b].bounce > 0;
   bouncing.clear();
   for (std::size_t k = 0; k < narrow.calm().size(); ++k)
     if (narrow.calm()[k].bounce > 0) bouncing.push_back(static_cast<int>(k));
@@ -119,21 +122,49 @@ void RigidSystem::State::predict(double h) {
     v.y *= linear;
     v.turn *= angular;
   }
-  narrow.refresh(bodies, broad, h);
+  narrow.refresh(bodies, broad, h, nullptr);
 }
 
 void RigidSystem::State::bounce(double h) {
   if (anyStruck) std::fill(struck.begin(), struck.end(), Motion{});
   anyStruck = false;
-  bouncers.clear();
-  for (const int k : bouncing)
-    if (!narrow.isDropped(k)) bouncers.push_back(&narrow.calm()[k]);
-  for (Contact& contact : narrow.lively())
-    if (contact.bounce > 0) bouncers.push_back(&contact);
-  if (bouncers.empty()) return;
+  if (!mayBounce) return;
+  impacts(h);
+  if (!anyStruck) return;
+  // From here on the bodies go straight ways, as if they had come from where these begin.
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    Motion& m = bodies.moved[b];
+    m.x += struck[b].x;
+    m.y += struck[b].y;
+    m.turn += struck[b].turn;
+  }
+}
+
+void RigidSystem::State::impacts(double h) {
   const double least = kRestingSubSteps * h * length(gravity) + 1e-7;
-  impact.run(bodies, bouncers, h, gravity, least, struck);
-  anyStruck = impact.count() > 0;
+  impact.begin(bodies.count());
+  constexpr int kRounds = 8;  // a body that is struck may meet others of which nothing was known yet
+  for (int round = 0; round < kRounds; ++round) {
+    bouncers.clear();
+    for (const int k : bouncing)
+      if (!narrow.isDropped(k)) bouncers.push_back(&narrow.calm()[k]);
+    for (Contact& contact : narrow.lively())
+      if (contact.bounce > 0) bouncers.push_back(&contact);
+    if (bouncers.empty()) return;
+    impact.run(bodies, bouncers, h, gravity, least, struck);
+    if (impact.count() == 0) return;
+    anyStruck = true;
+    findWays(h, true);
+    narrow.stir(bodies, way, broad, gravity, blocks, timeLeft);
+    narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
+  }
+}
+
+void RigidSystem::State::findWays(double h, bool withStruck) {
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    const Motion &v = bodies.velocity[b], by = withStruck ? struck[b] : Motion{};
+    way[b] = {by.x + h * v.x, by.y + h * v.y, by.turn + h * v.turn};
+  }
 }
 
 void RigidSystem::State::warmStartAll(double h) {
@@ -201,21 +232,18 @@ void RigidSystem::State::solveContacts(double h) {
       if (change <= settled) break;
       if (sweeps * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
     }
-    for (int b = kWalls; b < bodies.count(); ++b) {
-      const Motion& v = bodies.velocity[b];
-      way[b] = {struck[b].x + h * v.x, struck[b].y + h * v.y, struck[b].turn + h * v.turn};
-    }
+    findWays(h, false);
     // Who would stray from the way expected of it has its pairs looked at again, before it moves.
     if (!narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) break;
     for (std::size_t k = 0; k < spare.size(); ++k)
       if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
-    narrow.refresh(bodies, broad, h);
+    narrow.refresh(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
   }
   findCalmShare();
 }
 
 void RigidSystem::State::move(double h) {
-  narrow.stopPassing(bodies, broad, way);
+  narrow.stopPassing(bodies, broad, h, anyStruck ? &impact.moments() : nullptr, way);
   for (int b = kWalls; b < bodies.count(); ++b) {
     Motion& m = bodies.moved[b];
     m.x += way[b].x;
