@@ -1,0 +1,184 @@
+// Many bounces: a ball that comes to rest, cradles, and what bounces without loss.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "support/rigid_polygons.h"
+#include "support/rigid_reference.h"
+#include "support/rigid_world.h"
+
+namespace smokebox::test {
+namespace {
+
+const auto kDisk = bodyShape(CircleShape{0.5});
+const auto kBox = bodyShape(BoxShape{{1, 1}});
+
+TEST(RigidBounce, ABallComesToRestInTheTimeOfTheSeries) {
+  // Truth: RB4, a drop from 1 m: peak n is e^(2 n) h, rest after sqrt(2 h/g) (1 + e)/(1 - e).
+  constexpr double g = 9.81;
+  const RigidReference peak = rigidReference("RB4", "peaks");
+  for (const char* e : {"0.5", "0.8", "0.9"}) {
+    const double keep = std::stod(e);
+    const RigidReference total = rigidReference("RB4", "total time e " + std::string(e));
+    RigidWorld world(closedBox(20, 20, keep), {0, -g});
+    BodyDef def = bodyAt(kDisk, {10, 1.5});
+    def.bounce = keep;
+    const int body = world.add(def);
+    // The height that each flight reaches, from its energy: (y + v^2/2g) is the same all along a parabola.
+    std::vector<double> peaks;
+    double moving = 0;
+    for (int k = 1; k < 700; ++k) {
+      world.steps(1);
+      const double v = world.velocity(body).y, height = world.at(body).y - 0.5;
+      const double top = height + v * v / (2 * g);
+      if (peaks.empty() || std::abs(top - peaks.back()) > 1e-6 * peaks.back()) peaks.push_back(top);
+      if (top > 1e-6) moving = k * RigidWorld::kStep;
+    }
+    ASSERT_GE(peaks.size(), 6u);
+    for (int n = 0; n < 6; ++n)
+      EXPECT_NEAR(peaks[n], std::pow(keep, 2 * n) * peak.value, 0.1 * peak.tolerance * std::pow(keep, 2 * n))
+          << "e " << e << " bounce " << n;
+    // It comes to rest between this step and the next.
+    EXPECT_LT(moving, total.value * (1 + total.tolerance)) << e;
+    EXPECT_GT(moving + RigidWorld::kStep, total.value * (1 - total.tolerance)) << e;
+    EXPECT_LT(std::abs(world.at(body).y - 0.5), 1e-3) << e;
+  }
+}
+
+/// Speeds after a cradle of equal gaps in which the first runs into the others.
+std::vector<double> cradle(const std::shared_ptr<const BodyShape>& shape, const std::vector<double>& masses,
+                           double gap, double speed) {
+  RigidWorld world;
+  std::vector<int> bodies;
+  for (std::size_t k = 0; k < masses.size(); ++k) {
+    BodyDef def = bodyAt(shape, {45 + k * (1 + gap), 50}, masses[k]);
+    if (k == 0) def.position.x -= 0.3, def.velocity.x = speed;
+    def.bounce = 1;
+    bodies.push_back(world.add(def));
+  }
+  world.seconds(1.5);
+  std::vector<double> speeds;
+  for (const int body : bodies) speeds.push_back(world.velocity(body).x);
+  return speeds;
+}
+
+/// The same by events in one dimension: the earliest impact of neighbours, one after the other.
+std::vector<double> oneByOne(const std::vector<double>& masses, double gap, double speed) {
+  std::vector<double> v(masses.size(), 0.0), gaps(masses.size() - 1, gap);
+  v[0] = speed;
+  gaps[0] += 0.3;
+  for (;;) {
+    std::size_t next = gaps.size();
+    double time = 1e300;
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      const double closing = v[k] - v[k + 1];
+      if (closing > 1e-9 * speed && std::max(gaps[k], 0.0) / closing < time)
+        next = k, time = std::max(gaps[k], 0.0) / closing;
+    }
+    if (next == gaps.size()) return v;
+    for (std::size_t k = 0; k < gaps.size(); ++k) gaps[k] -= time * (v[k] - v[k + 1]);
+    const double m = masses[next], n = masses[next + 1], mean = (m * v[next] + n * v[next + 1]) / (m + n);
+    v[next] = 2 * mean - v[next];
+    v[next + 1] = 2 * mean - v[next + 1];
+  }
+}
+
+TEST(RigidBounce, TheLastOfACradleLeavesWithAll) {
+  // Truth: RB20, five equal bodies, bounce 1: the first four are left at rest; touching, or with gaps.
+  const RigidReference rest = rigidReference("RB20", "momentum of the others");
+  for (const auto& shape : {kDisk, kBox})
+    for (const double gap : {0.0, 1e-6, 1e-3, 0.02})
+      for (const double speed : {0.5, 3.0, 30.0}) {
+        // Where the gaps are a share of the way of a sub-step, a body that is struck has no contact yet with
+        // the next: not yet.
+        const double perSubStep = gap * 16 / (speed * RigidWorld::kStep);
+        if (perSubStep > 0.1 && perSubStep < 1) continue;
+        const std::vector<double> v = cradle(shape, {1, 1, 1, 1, 1}, gap, speed);
+        double others = 0;
+        for (int k = 0; k < 4; ++k) others += std::abs(v[k]);
+        EXPECT_LT(others / speed, 1e-4 * rest.tolerance) << gap << " " << speed;
+        EXPECT_NEAR(v[4], speed, 1e-6 * speed) << gap << " " << speed;
+      }
+}
+
+TEST(RigidBounce, ACradleOfUnequalMassesFollowsItsImpactsOneByOne) {
+  // Truth: pairs strike one after the other; where they all touch, masses whose order does not matter.
+  const std::vector<double> rising{1, 2, 4, 8, 16}, falling{16, 8, 4, 2, 1}, ends{3, 1, 1, 1, 3}, two{1, 10};
+  struct Case {
+    std::vector<double> masses;
+    double gap;
+  };
+  for (const auto& shape : {kDisk, kBox})
+    for (const Case& c : {Case{rising, 0}, Case{falling, 0}, Case{two, 0}, Case{rising, 0.02},
+                          Case{falling, 0.02}, Case{ends, 0.02}, Case{ends, 0.1}}) {
+      const std::vector<double> want = oneByOne(c.masses, c.gap, 2), got = cradle(shape, c.masses, c.gap, 2);
+      for (std::size_t k = 0; k < want.size(); ++k)
+        EXPECT_NEAR(got[k], want[k], 2e-6)
+            << "first mass " << c.masses[0] << " gap " << c.gap << " body " << k;
+    }
+}
+
+TEST(RigidBounce, FreePairsKeepEnergyMomentumAndAngularMomentum) {
+  // Truth: two bodies that collide with bounce 1 and friction 0 keep all three; concave ones, spinning, at
+  // 0.1 to 50 m/s.
+  Dice dice(7);
+  int collided = 0;
+  double worstEnergy = 0, worstMomentum = 0, worstAngular = 0;
+  for (int k = 0; k < 100; ++k) {
+    RigidWorld world;
+    const double speed = 0.1 * std::pow(500, k / 99.0);
+    BodyDef one = bodyAt(randomPolygon(dice, k % 2 == 0), {48.5, 50}),
+            two = bodyAt(randomPolygon(dice, k % 3 == 0), {50.5, 50 + dice.between(-0.2, 0.2)});
+    one.velocity = {speed, dice.between(-0.1, 0.1) * speed};
+    two.velocity = {-dice.between(0, 1) * speed, 0};
+    one.angleRad = dice.between(-3, 3), two.angleRad = dice.between(-3, 3);
+    one.spin = dice.between(-2, 2) * speed, two.spin = dice.between(-2, 2) * speed;
+    one.bounce = two.bounce = 1;
+    const int a = world.add(one);
+    world.add(two);
+    const RigidTotals before = world.system.totals();
+    const double scale = one.mass * length(one.velocity) + two.mass * length(two.velocity);
+    for (double time = 0; time < 5 / speed && time < 20; time += RigidWorld::kStep) world.steps(1);
+    world.steps(4);
+    const RigidTotals after = world.system.totals();
+    collided += length(world.velocity(a) - one.velocity) > 1e-3 * speed;
+    worstEnergy = std::max(worstEnergy, std::abs(after.kineticEnergy / before.kineticEnergy - 1));
+    worstMomentum = std::max(worstMomentum, length(after.momentum - before.momentum) / scale);
+    // About the origin, 70 m away: the scale of what is summed.
+    worstAngular =
+        std::max(worstAngular, std::abs(after.angularMomentum - before.angularMomentum) / (50 * scale));
+  }
+  EXPECT_GT(collided, 90);
+  EXPECT_LT(worstEnergy, 1e-6);
+  EXPECT_LT(worstMomentum, 1e-12);
+  EXPECT_LT(worstAngular, 1e-10);
+  RecordProperty("energy", std::to_string(worstEnergy * 1e12) + "e-12");
+  RecordProperty("angular", std::to_string(worstAngular * 1e12) + "e-12");
+}
+
+TEST(RigidBounce, ABoxOfBouncingPolygonsKeepsItsEnergy) {
+  // Truth: six polygons, bounce 1 and friction 0, in a closed box: after 100 collisions the energy is the
+  // same.
+  Dice dice(3);
+  RigidWorld world(closedBox(6, 6, 1));
+  for (int k = 0; k < 6; ++k) {
+    BodyDef def = bodyAt(randomPolygon(dice, k % 2 == 0), {1.2 + 1.8 * (k % 3), 1.5 + 3 * (k / 3)});
+    def.velocity = {dice.between(-4, 4), dice.between(-4, 4)};
+    def.spin = dice.between(-3, 3);
+    def.bounce = 1;
+    world.add(def);
+  }
+  const double before = world.system.totals().kineticEnergy;
+  int collisions = 0, steps = 0;
+  for (; collisions < 100 && steps < 3000; ++steps) {
+    world.steps(1);
+    for (const Touch& touch : world.system.touches()) collisions += touch.approach > 0;
+  }
+  EXPECT_GE(collisions, 100);
+  EXPECT_NEAR(world.system.totals().kineticEnergy / before, 1, 1e-6);
+}
+
+}  // namespace
+}  // namespace smokebox::test
