@@ -54,6 +54,8 @@ void sortLinks(int rows, std::vector<CutLink>& links, std::vector<CutLink>& sort
   auto earlier = [](const CutLink& a, const CutLink& b) {
     if (a.j != b.j) return a.j < b.j;
     if (a.i != b.i) return a.i < b.i;
+    // Along x first, then along y: mirror images are added up in one order.
+    if (a.dj * a.dj != b.dj * b.dj) return a.dj == 0;
     return a.dj != b.dj ? a.dj < b.dj : a.di < b.di;
   };
   for (int j = 0, begin = 0; j <= rows; begin = rowStart[j++]) {

@@ -202,6 +202,7 @@ void VelocityExtension::rebuild(const Boundary& boundary, Component& c) {
               c.layer(a2, b2) <= c.layer(a, b))
             ghost.behind[ghost.count] = static_cast<int>(b2 * stride + a2);
           ++ghost.count;
+          if (step[1] == 0) ++ghost.countX;
         }
       }
       ghost.weight = 1 / static_cast<float>(std::max(ghost.count, 1));
@@ -249,10 +250,10 @@ void VelocityExtension::apply(const Component& c, const Field& wall, const std::
     pool_.blocks(static_cast<int>(from), static_cast<int>(to), kGhostGrain, [&](int begin, int end) {
       for (int k = begin; k < end; ++k) {
         const Ghost& g = c.ghosts[k];
-        float sum = 0;
+        float sum[2] = {};
         for (int s = 0; s < g.count; ++s)
-          sum += bounded ? data[g.sources[s]] : 2 * data[g.sources[s]] - data[g.behind[s]];
-        data[g.target] = g.weight * sum;
+          sum[s >= g.countX] += bounded ? data[g.sources[s]] : 2 * data[g.sources[s]] - data[g.behind[s]];
+        data[g.target] = g.weight * (sum[0] + sum[1]);
       }
     });
     from = to;

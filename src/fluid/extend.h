@@ -68,6 +68,7 @@ class VelocityExtension {
   };
   struct Ghost {  // value = weight * sum of (2 source - what lies behind it)
     int target = 0, sources[4] = {0, 0, 0, 0}, behind[4] = {0, 0, 0, 0}, count = 0;
+    int countX = 0;  // the first of them lie along x: they are added up apart from the others
     float weight = 0;
   };
   struct Component {

@@ -15,23 +15,33 @@ constexpr int kBandPairs = 2;           // red-black pairs along solids, beyond 
 constexpr std::size_t kFirstTwice = 3;  // the finest level of those that are visited twice
 constexpr int kSweeps = kFullSweeps + 2 * kBandPairs;
 
-/// Sweep s of row j on the way down.
+template <bool bandOnly, bool start = false>
+void sweepUnit(Level& level, int j, int colour) {
+  if (level.hasMiddleRows() && level.inMiddleRows(j))
+    multigrid::MiddleRows(level).sweep<bandOnly, start>(colour);
+  else if constexpr (start)
+    startRow(level, j);
+  else
+    multigrid::sweepRow<bandOnly>(level, j, colour);
+}
+
+/// Sweep s of row j on the way down; of the two middle rows, if it is one of them.
 void sweepDown(Level& level, int s, int j) {
   if (s == 0)
-    startRow(level, j);
+    sweepUnit<false, true>(level, j, 0);
   else if (s < kFullSweeps)
-    multigrid::sweepRow<false>(level, j, s & 1);
+    sweepUnit<false>(level, j, s & 1);
   else
-    multigrid::sweepRow<true>(level, j, s & 1);
+    sweepUnit<true>(level, j, s & 1);
 }
 
 /// The same sweeps backwards, on the way up.
 void sweepUp(Level& level, int s, int j) {
   const int mirrored = kSweeps - 1 - s;
   if (mirrored < kFullSweeps)
-    multigrid::sweepRow<false>(level, j, mirrored & 1);
+    sweepUnit<false>(level, j, mirrored & 1);
   else
-    multigrid::sweepRow<true>(level, j, mirrored & 1);
+    sweepUnit<true>(level, j, mirrored & 1);
 }
 
 double dotOfRow(const Level& level, int j) {
@@ -162,17 +172,29 @@ void Multigrid::rows(const Level& level, int first, int last, Body&& body) {
   forRows(pool_, serial ? 0 : static_cast<long>(level.nx) * level.ny, first, last, body);
 }
 
-template <class Stage>
-void Multigrid::inOrder(Level& level, int stages, Stage&& stage) {
-  const int ny = level.ny;
+template <class Sweep, class Then>
+void Multigrid::inOrder(Level& level, int sweepsBegin, int sweepsEnd, int stages, Sweep&& sweep,
+                        Then&& then) {
+  // The two rows in the middle of mirrored colours go together: units are rows, and one that is both.
+  const int middle = level.hasMiddleRows() ? level.swapsAtRow - 1 : level.ny;
+  const int units = level.hasMiddleRows() ? level.ny - 1 : level.ny;
+  const auto stage = [&](int s, int unit) {
+    const int j = unit <= middle ? unit : unit + 1;
+    if (s >= sweepsBegin && s < sweepsEnd) {
+      sweep(s, j);
+      return;
+    }
+    then(s, j);
+    if (unit == middle) then(s, j + 1);
+  };
   if (level.periodicY) {
     for (int s = 0; s < stages; ++s) {
-      rows(level, 0, ny, [&](int j) { stage(s, j); });
+      rows(level, 0, units, [&](int j) { stage(s, j); });
       level.wrapRows(level.x);
     }
     return;
   }
-  // Rows of a band that a stage can do without its neighbours' last ones.
+  // Units of a band that a stage can do without its neighbours' last ones.
   const auto band = [&](int low, int high, bool atBottom, bool atTop) {
     for (int t = low; t < high + stages; ++t)
       for (int s = 0; s < stages; ++s) {
@@ -181,9 +203,9 @@ void Multigrid::inOrder(Level& level, int stages, Stage&& stage) {
       }
   };
   constexpr int kFewestRows = 32, kBandsAThread = 4;
-  const int count = std::min(kBandsAThread * pool_.threads(), ny / kFewestRows);
-  if (!shared(level) || count < 2) return band(0, ny, true, true);
-  const auto border = [&](int k) { return static_cast<int>(static_cast<long>(ny) * k / count); };
+  const int count = std::min(kBandsAThread * pool_.threads(), units / kFewestRows);
+  if (!shared(level) || count < 2) return band(0, units, true, true);
+  const auto border = [&](int k) { return static_cast<int>(static_cast<long>(units) * k / count); };
   pool_.blocks(0, count, 1, [&](int k, int) { band(border(k), border(k + 1), k == 0, k == count - 1); });
   pool_.blocks(1, count, 1, [&](int k, int) {
     for (int s = 1; s < stages; ++s)
@@ -196,14 +218,12 @@ void Multigrid::descend(std::size_t l) {
   Level* coarse = l + 1 < levels_.size() ? &levels_[l + 1] : nullptr;
   const int ny = level.ny;
   const bool whole = shared(level) || level.periodicY;  // all rows of the residual are kept
-  inOrder(level, coarse ? kSweeps + 1 : kSweeps, [&](int s, int j) {
-    if (s < kSweeps) {
-      sweepDown(level, s, j);
-      return;
-    }
-    residualOfRow(level, j);
-    if (!whole && (j % 2 == 1 || j == ny - 1)) restrictRow(level, *coarse, j / 2, zeroRow_.data());
-  });
+  inOrder(
+      level, 0, kSweeps, coarse ? kSweeps + 1 : kSweeps, [&](int s, int j) { sweepDown(level, s, j); },
+      [&](int, int j) {
+        residualOfRow(level, j);
+        if (!whole && (j % 2 == 1 || j == ny - 1)) restrictRow(level, *coarse, j / 2, zeroRow_.data());
+      });
   if (coarse && whole)
     rows(level, 0, coarse->ny, [&](int J) { restrictRow(level, *coarse, J, zeroRow_.data()); });
 }
@@ -212,14 +232,15 @@ void Multigrid::ascend(std::size_t l) {
   Level& level = levels_[l];
   const Level& coarse = levels_[l + 1];
   const bool finest = l == 0;
-  inOrder(level, finest ? kSweeps + 2 : kSweeps + 1, [&](int s, int j) {
-    if (s == 0)
-      prolongRow(level, coarse, j);
-    else if (s <= kSweeps)
-      sweepUp(level, s - 1, j);
-    else
-      rowSums_[j] = dotOfRow(level, j);
-  });
+  inOrder(
+      level, 1, kSweeps + 1, finest ? kSweeps + 2 : kSweeps + 1,
+      [&](int s, int j) { sweepUp(level, s - 1, j); },
+      [&](int s, int j) {
+        if (s == 0)
+          prolongRow(level, coarse, j);
+        else
+          rowSums_[j] = dotOfRow(level, j);
+      });
 }
 
 void Multigrid::keepResidual(Level& level) {

@@ -11,8 +11,9 @@
 // coarsened down to one block. Cells without an open face, and regions without an open side at the coarsest
 // level, get 0 from there: b must add up to 0 over each sealed region.
 //
-// The colours are mirrored about the middle of an even number of columns: a problem that is mirrored left to
-// right has the mirrored solution to the bit, where the columns halve down to one.
+// The colours are mirrored about the middle of an even number of columns and of an even number of rows: a
+// problem that is mirrored left to right (or up to down) has the mirrored solution to the bit, where the
+// columns (or rows) halve down to one and no block beside the middle is split.
 //
 // All sweeps of a level run in one pass over its rows, each row as soon as its neighbours are ready; several
 // threads do so in bands of rows, each sweep a row further from the border than the last, and then what is
@@ -59,10 +60,12 @@ class Multigrid {
   void ascend(std::size_t l);
   /// Large enough to be spread over several threads.
   bool shared(const multigrid::Level& level) const;
-  /// Calls stage(s, j), s from 0 to `stages` - 1, for all rows, each after stage s - 1 of the rows beside it
-  /// and before stage s + 1 of them.
-  template <class Stage>
-  void inOrder(multigrid::Level& level, int stages, Stage&& stage);
+  /// Does the stages 0 to `stages` - 1 for all rows, each after the stage before of the rows beside it and
+  /// before the stage after of them: sweep(s, j) for the stages from sweepsBegin to sweepsEnd - 1, once for
+  /// the two rows in the middle of mirrored colours, and then(s, j) for the others.
+  template <class Sweep, class Then>
+  void inOrder(multigrid::Level& level, int sweepsBegin, int sweepsEnd, int stages, Sweep&& sweep,
+               Then&& then);
   template <class Body>
   void rows(const multigrid::Level& level, int first, int last, Body&& body);
 

@@ -435,32 +435,40 @@ void Builder::linkLists(const Level& fine, Level& coarse) {
   if (coarse.periodicY) std::copy_n(coarse.row(coarse.ay, 0), coarse.nx, coarse.row(coarse.ay, coarse.ny));
 }
 
-// In the middle of mirrored colours two columns have one colour; a sweep solves each such pair as one. Where
-// a pair has no other link, and where blocks are split there, the colours go on as everywhere.
+// In the middle of mirrored colours two columns, or two rows, have one colour; a sweep solves each such pair
+// as one. Where a pair has no other link, and where blocks are split there, the colours go on as everywhere.
 void Builder::chooseColours(Level& level) {
-  constexpr float kMost = 0.99f;
-  const int middle = level.nx / 2;
-  level.swapsAt = level.chunks * kLanes + kLanes;
-  if (level.nx % 2 == 1 || level.periodicX) return;
-  const auto linkedElsewhere = [&](int j) {
-    const std::ptrdiff_t b = level.at(middle, j), a = b - 1;
-    const auto sum = [&](std::ptrdiff_t at) {
-      return (level.ax[at] + level.ax[at + 1]) + (level.ay[at] + level.ay[at + level.stride]);
-    };
-    return !(level.ax[b] > 0) || (level.ax[b] <= kMost * sum(a) && level.ax[b] <= kMost * sum(b));
-  };
+  const int column = level.nx / 2, row = level.ny / 2;
+  bool mirrorX = level.nx % 2 == 0 && !level.periodicX, mirrorY = level.ny % 2 == 0 && !level.periodicY;
   const auto split = [&](int at) {
     if (at >= level.extrasBegin)
       at = static_cast<int>(level.at(level.extraCell[at - level.extrasBegin] % level.nx,
                                      level.extraCell[at - level.extrasBegin] / level.nx));
-    const int i = cellOf(level, at).i;
-    return i == middle || i == middle - 1;
+    const Cell c = cellOf(level, at);
+    mirrorX &= c.i != column && c.i != column - 1;
+    mirrorY &= c.j != row && c.j != row - 1;
   };
-  for (const Raw& link : raw_)
-    if (split(link.a) || (!link.ghost && split(link.b))) return;
-  for (int j = 0; j < level.ny; ++j)
-    if (!linkedElsewhere(j)) return;
-  level.swapsAt = middle;
+  for (const Raw& link : raw_) {
+    split(link.a);
+    if (!link.ghost) split(link.b);
+  }
+  const auto linkedElsewhere = [&](std::ptrdiff_t a, std::ptrdiff_t b, float link) {
+    constexpr float kMost = 0.99f;
+    const auto sum = [&](std::ptrdiff_t at) {
+      return (level.ax[at] + level.ax[at + 1]) + (level.ay[at] + level.ay[at + level.stride]);
+    };
+    return !(link > 0) || (link <= kMost * sum(a) && link <= kMost * sum(b));
+  };
+  for (int j = 0; j < level.ny && mirrorX; ++j) {
+    const std::ptrdiff_t b = level.at(column, j);
+    mirrorX = linkedElsewhere(b - 1, b, level.ax[b]);
+  }
+  for (int i = 0; i < level.nx && mirrorY; ++i) {
+    const std::ptrdiff_t b = level.at(i, row);
+    mirrorY = linkedElsewhere(b - level.stride, b, level.ay[b]);
+  }
+  level.swapsAt = mirrorX ? column : level.chunks * kLanes + kLanes;
+  level.swapsAtRow = mirrorY ? row : level.ny + 1;
 }
 
 // Sorts the special unknowns by row and colour, and gathers their links; parallel links become one.

@@ -4,6 +4,8 @@
 //
 // Sums of a row go into 16 lanes, which are then added in a fixed order in float64.
 #pragma once
+#include <algorithm>
+
 #include "fluid/multigrid_level.h"
 
 // Vectors wider than the machine's stay inside inlined functions. The warning comes at the end of a file: not
@@ -55,11 +57,11 @@ SMOKEBOX_INLINE unsigned bitsOf(const LaneMask& m) {
 }
 
 /// Lanes of columns i to i + 15 of row j that have the given colour (0 red: i + j even; where the level is
-/// mirrored, the right half has its colours the other way round).
+/// mirrored, the right and the upper half have their colours the other way round).
 SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int j, int colour) {
   const LaneMask even = {-1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
   const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const LaneMask mask = ((j + colour) & 1) ? ~even : even;
+  const LaneMask mask = ((level.colourOfRow(j) + colour) & 1) ? ~even : even;
   return mask ^ (place >= level.swapsAt - static_cast<int>(i));
 }
 
@@ -96,7 +98,7 @@ struct MiddlePair {
 template <bool bandOnly>
 inline bool sweepsMiddle(const Level& level, int j, int colour) {
   const int b = level.swapsAt, a = b - 1;
-  if (b >= level.nx || level.colourOf(b, j) != colour) return false;
+  if (b >= level.nx || level.inMiddleRows(j) || level.colourOf(b, j) != colour) return false;
   const std::uint8_t *kind = level.chunkRow(j), first = kind[a / kLanes], second = kind[b / kLanes];
   return bandOnly ? (first & second & kBand) != 0 : ((first | second) & kEmpty) == 0;
 }
@@ -176,14 +178,115 @@ inline void startRow(Level& level, int j) {
   level.wrapRow(x);
 }
 
+/// What the two rows in the middle of mirrored colours held before a sweep of one colour, and its end: each
+/// pair of cells above each other is solved as one, from what the sweep made of each with the old value of
+/// the other; and so are the four cells in the very middle, all of one colour.
+class MiddleRows {
+ public:
+  explicit MiddleRows(Level& level) : level_(level), upper_(level.swapsAtRow), lower_(upper_ - 1) {}
+
+  /// Both rows in one sweep. `start`: the first sweep, from the value 0.
+  template <bool bandOnly, bool start = false>
+  void sweep(int colour) {
+    if constexpr (start) {
+      startRow(level_, lower_);
+      startRow(level_, upper_);
+      std::fill_n(old(0), width(), 0.0f);
+      std::fill_n(old(1), width(), 0.0f);
+    } else {
+      float *below = level_.row(level_.x, lower_) - 1, *above = level_.row(level_.x, upper_) - 1;
+      std::copy_n(below, width(), old(0));
+      std::copy_n(above, width(), old(1));
+      sweepRow<bandOnly>(level_, lower_, colour);
+      std::copy_n(below, width(), old(2));
+      std::copy_n(old(0), width(), below);
+      sweepRow<bandOnly>(level_, upper_, colour);
+      std::copy_n(old(2), width(), below);
+    }
+    join<bandOnly>(colour);
+  }
+
+ private:
+  int width() const { return level_.nx + 2; }
+  /// Scratch of the level: a row with its copies beyond the sides.
+  float* old(int k) { return level_.middle.data() + k * (width() + kLanes); }
+
+  template <bool bandOnly>
+  void join(int colour) {
+    float *below = level_.row(level_.x, lower_), *above = level_.row(level_.x, upper_);
+    const float *wasBelow = old(0) + 1, *wasAbove = old(1) + 1, *link = level_.row(level_.ay, upper_);
+    const float *idBelow = level_.row(level_.id, lower_), *idAbove = level_.row(level_.id, upper_);
+    const std::uint8_t *kindBelow = level_.chunkRow(lower_), *kindAbove = level_.chunkRow(upper_);
+    for (int c = 0; c < level_.chunks; ++c) {
+      if (bandOnly ? !(kindBelow[c] & kindAbove[c] & kBand) : ((kindBelow[c] | kindAbove[c]) & kEmpty) != 0)
+        continue;
+      const int first = c * kLanes, last = std::min(level_.nx, first + kLanes);
+      for (int i = first; i < last; ++i) {
+        if (level_.colourOf(i, lower_) != colour) continue;
+        if (i == level_.swapsAt || i == level_.swapsAt - 1) continue;
+        const float overBelow = link[i] * idBelow[i], overAbove = link[i] * idAbove[i];
+        if (!(overBelow > 0 && overAbove > 0)) continue;
+        const float p = below[i] - overBelow * wasAbove[i], q = above[i] - overAbove * wasBelow[i],
+                    scale = 1 / (1 - overBelow * overAbove);
+        below[i] = (p + overBelow * q) * scale;
+        above[i] = (q + overAbove * p) * scale;
+      }
+    }
+    if (level_.swapsAt < level_.nx && level_.colourOf(level_.swapsAt, lower_) == colour) {
+      const int first = (level_.swapsAt - 1) / kLanes, second = level_.swapsAt / kLanes;
+      const std::uint8_t all = kindBelow[first] & kindBelow[second] & kindAbove[first] & kindAbove[second];
+      const std::uint8_t any = kindBelow[first] | kindBelow[second] | kindAbove[first] | kindAbove[second];
+      if (bandOnly ? (all & kBand) != 0 : (any & kEmpty) == 0) solveFour(below, above, wasBelow, wasAbove);
+    }
+    level_.wrapRow(below);
+    level_.wrapRow(above);
+  }
+
+  /// The four cells 0 1 / 2 3 (below, above) in a ring, from what Jacobi's step has made of each. Two that
+  /// are not linked are found by eliminating the other two, and those by eliminating these: mirror images do
+  /// the same.
+  void solveFour(float* below, float* above, const float* wasBelow, const float* wasAbove) const {
+    // Just off the diagonal, so that four cells without another link (then their sum is 0) can be solved.
+    constexpr float kOff = 1 / (1 + 1.0f / 64);
+    const int b = level_.swapsAt, a = b - 1;
+    float* const cell[4] = {below + a, below + b, above + a, above + b};
+    const float was[4] = {wasBelow[a], wasBelow[b], wasAbove[a], wasAbove[b]};
+    const std::ptrdiff_t low = level_.at(a, lower_), high = level_.at(a, upper_);
+    const float id[4] = {level_.id[low], level_.id[low + 1], level_.id[high], level_.id[high + 1]};
+    const float under = level_.ax[low + 1], over = level_.ax[high + 1], left = level_.ay[high],
+                right = level_.ay[high + 1];
+    float change[4], along[4], up[4];  // Jacobi's; the link to the cell beside it, and above or below it
+    for (int k = 0; k < 4; ++k) {
+      change[k] = kOff * (*cell[k] - was[k]);
+      along[k] = kOff * (k < 2 ? under : over) * id[k];
+      up[k] = kOff * (k % 2 == 0 ? left : right) * id[k];
+    }
+    for (int p = 0; p < 2; ++p) {
+      // q lies across from p; r beside p and above or below q, s the other way round.
+      const int q = 3 - p, r = p ^ 1, s = p ^ 2;
+      const float ownP = 1 - (along[p] * along[r] + up[p] * up[s]),
+                  ownQ = 1 - (along[q] * along[s] + up[q] * up[r]);
+      const float pq = along[p] * up[r] + up[p] * along[s], qp = along[q] * up[s] + up[q] * along[r];
+      const float rightP = change[p] + (along[p] * change[r] + up[p] * change[s]),
+                  rightQ = change[q] + (along[q] * change[s] + up[q] * change[r]);
+      const float scale = 1 / (ownP * ownQ - pq * qp);
+      *cell[p] = was[p] + (ownQ * rightP + pq * rightQ) * scale;
+      *cell[q] = was[q] + (ownP * rightQ + qp * rightP) * scale;
+    }
+  }
+
+  Level& level_;
+  int upper_, lower_;
+};
+
 /// Sum over the links of  weight (value here - value there)  in one chunk of a row.
 SMOKEBOX_INLINE Lanes applyChunk(const Level& level, std::uint8_t kind, const float* x,
                                  std::ptrdiff_t offset) {
   const float* here = x + offset;
   const Lanes v = load(here);
   if (kind & kRegular)
-    return ((4.0f * v - (load(here - 1) + load(here + 1))) - load(here - level.stride)) -
-           load(here + level.stride);
+    return (4.0f * v - (load(here - 1) + load(here + 1))) -
+           (load(here - level.stride) + load(here + level.stride));
   const float* ax = level.ax.data() + offset;
   const float* ay = level.ay.data() + offset;
   const Lanes sum = (load(ax) * (v - load(here - 1)) + load(ax + 1) * (v - load(here + 1))) +

@@ -44,6 +44,7 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
   specialBegin.assign(2 * ny + 1, 0);
   prolongBegin.assign(ny + 1, 0);
 
+  middle.assign(3 * (nx + 2 + kLanes), 0);
   residualRows = wholeResidual ? ny : std::min(ny, 2);
   residualStride = (chunks + 1) / 2 * 2 * kLanes;
   residual.assign(residualRows * residualStride, 0);
@@ -55,7 +56,7 @@ std::size_t Level::bytes() const {
          bytesOf(specialAt) + bytesOf(specialCell) + bytesOf(specialInverse) + bytesOf(specialValue) +
          bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) + bytesOf(prolongBegin) + bytesOf(prolong) +
          bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) + bytesOf(residual) + bytesOf(residualExtra) +
-         bytesOf(onceX) + bytesOf(onceB);
+         bytesOf(onceX) + bytesOf(onceB) + bytesOf(middle);
 }
 
 }  // namespace smokebox::multigrid

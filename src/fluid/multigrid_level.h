@@ -53,9 +53,10 @@ struct Level {
   int nx = 0, ny = 0;
   bool periodicX = false, periodicY = false;
   int chunks = 0;  // in a row
-  // The colours are mirrored about the middle of an even number of columns, so that a mirrored problem has
-  // the mirrored solution: from this column on, or from beyond the last.
-  int swapsAt = 0;
+  // The colours are mirrored about the middle of an even number of columns and about that of an even number
+  // of rows, so that a mirrored problem has the mirrored solution: from this column on, and from this row on;
+  // or from beyond the last.
+  int swapsAt = 0, swapsAtRow = 0;
   double unit = 1;                        // edge of a whole block, in cells of the finest grid
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
   std::ptrdiff_t extrasBegin = 0;         // offset of the first extra unknown
@@ -115,6 +116,7 @@ struct Level {
   std::vector<int> child;  // 2 i + (j & 1) of a primary unknown, ~k of the extra unknown k
 
   Floats onceX, onceB;  // put by between the first and the second visit of a W-cycle
+  std::vector<float> middle;  // scratch: what the two middle rows held before a sweep
 
   // ---- residual: whole rows; two of them are enough where the sweeps are fused
   Floats residual;
@@ -137,7 +139,12 @@ struct Level {
   /// The rows beyond bottom and top, if those are periodic.
   void wrapRows(Floats& f) const;
 
-  int colourOf(int i, int j) const { return (i + j + (i >= swapsAt ? 1 : 0)) & 1; }
+  int colourOf(int i, int j) const { return (i + colourOfRow(j) + (i >= swapsAt ? 1 : 0)) & 1; }
+  /// Of the first cell in it.
+  int colourOfRow(int j) const { return (j + (j >= swapsAtRow ? 1 : 0)) & 1; }
+  /// The two rows in the middle of mirrored colours: cells above each other have one colour there.
+  bool inMiddleRows(int j) const { return j == swapsAtRow || j == swapsAtRow - 1; }
+  bool hasMiddleRows() const { return swapsAtRow < ny; }
 
   /// Sizes everything that depends on the grid alone. `wholeResidual`: keep all its rows.
   void shape(int nx, int ny, bool periodicX, bool periodicY, bool wholeResidual);

@@ -28,10 +28,11 @@ struct Channel {
   float highest = 0;  // largest value
   float swept = 0;    // the same after the sweeps
   Activity active;
-  double emitted = 0, left = 0;  // in cell areas
+  double emitted = 0, left = 0, rounded = 0;  // in cell areas; rounded: taken by rounding to coarser quanta
 };
 
-// Smoke of a cell that closed with no open cell of its region in reach.
+// Smoke of a cell that closed with no open cell of its region in reach, or that neither a cell nor those
+// around it can hold.
 struct Trapped {
   int channel, cell;
   double mass;
@@ -78,11 +79,12 @@ struct Smoke::Impl {
   void makeRoom(int channel, float highest);
   void move(int channel, const std::vector<SmokeTransfer>& transfers);
   void renew(Channel& c, int cell, const Field& volume, float highest);
-  void release(const Boundary& b);
+  void release(int channel, const Boundary& b, float highest);
+  void keepBelow(int channel, const Boundary& b, float highest);
   void shareValues(Channel& c, const SweptVolumes& volume);
   void donorClusters(const Channel& c, Axis axis, const SweptVolumes& volume);
   void fillMargins(Channel& c, Axis axis);
-  void endClusters(Channel& c, const Boundary& b, float highest);
+  void endClusters(Channel& c, const Boundary& b);
   void sweep(int channel, Axis axis, const SweptVolumes& volume, const Field* divisor);
   void end(int channel, const Boundary& b);
   void touch(Channel& c, int cell) {
@@ -99,8 +101,9 @@ struct Smoke::Impl {
   }
 };
 
-// Coarsens the quantum if values up to `highest` need it; what rounding takes from a cell goes to the next
-// one with smoke, and what is left at the end to the trapped remainder.
+// Coarsens the quantum if values up to `highest` need it. Each cell is rounded by itself, half to even: so
+// that mirror images stay such, and nothing is made or lost on average. What rounding took in all, some parts
+// in 1e10 of it, is kept and counted.
 void Smoke::Impl::makeRoom(int channel, float highest) {
   Channel& c = channels[channel];
   if (highest <= 0) return;
@@ -108,22 +111,19 @@ void Smoke::Impl::makeRoom(int channel, float highest) {
   if (c.quantum.size == 0 || (c.quantum.size >= 4 * needed && c.highest > 0)) setQuantum(c, needed);
   if (needed <= c.quantum.size) return;
   setQuantum(c, needed);
-  double carried = 0;
-  int place = 0;
-  for (int j = 0; j < c.mass.ny(); ++j) {
-    float* m = c.mass.row(j);
-    for (int i = 0; i < c.mass.nx(); ++i) {
-      if (!(m[i] > 0)) continue;
-      const double exact = m[i] + carried;
-      m[i] = static_cast<float>(std::floor(exact / needed + 0.5) * needed);
-      if (m[i] < 0) m[i] = 0;
-      carried = exact - m[i];
-      place = volumes.cells().cell(i, j);
+  const int nx = volumes.cells().nx;
+  c.rounded += pool.sum(0, volumes.cells().ny, kGrain, [&](int begin, int end) {
+    double sum = 0;
+    for (int j = begin; j < end; ++j) {
+      float* m = c.mass.row(j);
+      for (int i = 0; i < nx; ++i) {
+        const float whole = std::nearbyint(m[i] * c.quantum.inverse) * c.quantum.size;
+        sum += static_cast<double>(m[i]) - whole;
+        m[i] = whole;
+      }
     }
-  }
-  const SmokeCells& cells = volumes.cells();
-  if (carried != 0)
-    trapped.push_back({channel, place, carried, volumes.regionsBefore().at(cells.i(place), cells.j(place))});
+    return sum;
+  });
 }
 
 // What goes from cell to cell.
@@ -149,20 +149,31 @@ void Smoke::Impl::move(int channel, const std::vector<SmokeTransfer>& transfers)
   }
 }
 
-// Gives back what was kept aside, where a cell has opened near by.
-void Smoke::Impl::release(const Boundary& b) {
+// Gives back what was kept aside: to the cell, or where that has closed to one that is open near by, up to
+// twice what it holds at the ceiling. What is too much there is spread, or kept aside again.
+void Smoke::Impl::release(int channel, const Boundary& b, float highest) {
   const SmokeCells& cells = volumes.cells();
+  Channel& c = channels[channel];
+  const Quantum q = c.quantum;
+  if (q.size == 0) return;
   for (Trapped& t : trapped) {
-    Channel& c = channels[t.channel];
-    if (!(t.mass >= c.quantum.size) || c.quantum.size == 0) continue;
+    if (t.channel != channel) continue;
+    if (!volumes.moved() && !(b.volume(cells.i(t.cell), cells.j(t.cell)) > 0)) continue;
     const int to =
         volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions}, t.cell, t.region);
     if (to < 0) continue;
-    const float moved = static_cast<float>(std::floor(t.mass * c.quantum.inverse) * c.quantum.size);
-    c.mass(cells.i(to), cells.j(to)) += moved;
+    const int i = cells.i(to), j = cells.j(to);
+    const double room = 2.0 * highest * volumes.carried()(i, j) - c.mass(i, j);
+    const double moved = std::floor(std::min(t.mass, std::max(room, 0.0)) * q.inverse) * q.size;
     t.mass -= moved;
+    if (t.mass < q.size) {
+      c.rounded += t.mass;
+      t.mass = 0;
+    }
+    if (!(moved > 0)) continue;
+    c.mass(i, j) += static_cast<float>(moved);
     renew(c, to, volumes.carried(), kLargest);
-    c.highest = std::max(c.highest, c.value(cells.i(to), cells.j(to)));
+    c.highest = std::max(c.highest, c.value(i, j));
     touch(c, to);
   }
   std::erase_if(trapped, [](const Trapped& t) { return t.mass == 0; });
@@ -275,7 +286,7 @@ void Smoke::Impl::fillMargins(Channel& c, Axis axis) {
 }
 
 // Shares the mass of each cluster out among its cells by their open area, as its volume has been.
-void Smoke::Impl::endClusters(Channel& c, const Boundary& b, float highest) {
+void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
   const SmokeCells& cells = volumes.cells();
   const CellClusters& clusters = volumes.clusters();
   const Quantum q = c.quantum;
@@ -295,11 +306,11 @@ void Smoke::Impl::endClusters(Channel& c, const Boundary& b, float highest) {
       const double part = std::floor(m * (b.volume(i, j) / v) * q.inverse) * q.size;
       rest -= part;
       c.mass(i, j) = static_cast<float>(part);
-      c.value(i, j) = std::min(static_cast<float>(value), highest);
+      c.value(i, j) = static_cast<float>(value);
       if (m > 0) touch(c, *cell);
     }
     c.mass(cells.i(largest), cells.j(largest)) += static_cast<float>(rest);
-    c.highest = std::max(c.highest, std::min(static_cast<float>(value), highest));
+    c.highest = std::max(c.highest, static_cast<float>(value));
   }
 }
 
@@ -382,18 +393,28 @@ void Smoke::Impl::end(int channel, const Boundary& b) {
   Channel& c = channels[channel];
   const float before = c.highest;
   c.highest = c.swept;
-  endClusters(c, b, before);
+  endClusters(c, b);
   if (volumes.carries() && !volumes.plan().exchanged().empty()) {
     move(channel, volumes.plan().exchanged());
-    for (const SmokeTransfer& t : volumes.plan().exchanged()) {
-      renew(c, t.from, volumes.carried(), before);
-      renew(c, t.to, volumes.carried(), before);
-    }
+    for (const SmokeTransfer& t : volumes.plan().exchanged())
+      for (int cell : {t.from, t.to}) {
+        renew(c, cell, volumes.carried(), kLargest);
+        c.highest = std::max(c.highest, c.value(volumes.cells().i(cell), volumes.cells().j(cell)));
+      }
   }
-  if (c.highest > before)
-    c.highest =
-        spread.run(volumes.cells(), b, volumes.carried(), before, c.quantum, c.mass, c.value, c.active);
+  if (!trapped.empty()) release(channel, b, before);
+  if (c.highest > before) keepBelow(channel, b, before);
   if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.mass, c.value, c.active);
+}
+
+// No value above `highest`: what finds no room near by is kept aside.
+void Smoke::Impl::keepBelow(int channel, const Boundary& b, float highest) {
+  Channel& c = channels[channel];
+  const SmokeCells& cells = volumes.cells();
+  for (const MassSpread::Overflow& o :
+       spread.run(cells, b, volumes.carried(), highest, c.quantum, c.mass, c.value, c.active))
+    trapped.push_back({channel, o.cell, o.mass, b.regions.at(cells.i(o.cell), cells.j(o.cell))});
+  c.highest = highest;
 }
 
 void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double dt) {
@@ -405,7 +426,7 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
   for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest * volumes.mostCarried());
   if (volumes.moved())
     for (Trapped& t : s.trapped)
-      t.region = t.region >= 0 && volumes.match().apart() ? volumes.match().heir(t.region) : -1;
+      if (volumes.match().apart() && t.region >= 0) t.region = volumes.match().heir(t.region);
 
   SweptVolumes volume = volumes.swept();
   for (int k = 0; k < channels(); ++k) {
@@ -435,7 +456,6 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
     if (s.channels[k].highest > 0) s.end(k, b);
   s.yFirst = !s.yFirst;
   volumes.finish(b);
-  if (volumes.moved() && !s.trapped.empty()) s.release(b);
 }
 
 Smoke::Totals Smoke::totals() const {
@@ -451,6 +471,7 @@ Smoke::Totals Smoke::totals() const {
       }
       return sum;
     });
+    totals.mass += c.rounded;
     totals.emitted += c.emitted;
     totals.left += c.left;
     for (int j = 0; j < c.mass.ny(); ++j) {

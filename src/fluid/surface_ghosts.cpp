@@ -35,8 +35,11 @@ class SurfaceGhosts::Finder {
       Vec2i at{link.i + link.di, link.j + link.dj};
       if (link.solid >= 0 && inside(at)) arrivals.push_back({indexOf(at), static_cast<int>(k)});
     }
-    std::sort(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
-      return a.target != b.target ? a.target < b.target : a.link < b.link;
+    // Those along x first, so that mirror images add up in the same order.
+    std::sort(arrivals.begin(), arrivals.end(), [&](const Arrival& a, const Arrival& b) {
+      if (a.target != b.target) return a.target < b.target;
+      const bool acrossA = links_[a.link].di == 0, acrossB = links_[b.link].di == 0;
+      return acrossA != acrossB ? acrossB : a.link < b.link;
     });
   }
 
@@ -141,8 +144,8 @@ class SurfaceGhosts::Finder {
       if (distance < kNear && before(from, link.di, link.dj, behind)) base = behind, distance += 1;
       const double slope = (1 - link.theta) / std::max(distance, kNear);
       const double weight = share * weightOf(k) / sum;
-      recipe.addLink(index, weight * (1 + slope));
-      recipe.add(indexOf(base), -weight * slope);
+      recipe.addLink(index, link.di == 0, weight * (1 + slope));
+      recipe.add(indexOf(base), link.di == 0, -weight * slope);
     }
   }
 
@@ -160,7 +163,7 @@ class SurfaceGhosts::Finder {
     if (count == 0) return false;
     const double weight = share / count;
     for (int n = 0; n < count && recipe.count + 2 <= GhostRecipe::kMostSources; ++n) {
-      recipe.add(indexOf(from[n]), weight);
+      recipe.add(indexOf(from[n]), from[n].i == at.i, weight);
     }
     return true;
   }

@@ -19,26 +19,30 @@
 namespace smokebox {
 
 /// value = own * (value that stands there) + sum of weights * faces + sum of weights * velocities of links.
+/// What lies along x is added up apart from what lies along y, so that mirror images have the same sums.
 struct GhostRecipe {
   static constexpr int kMostSources = 8, kMostLinks = 4;
   int target = 0, sources[kMostSources] = {}, count = 0;
   int links[kMostLinks] = {}, linkCount = 0;
+  bool across[kMostSources] = {}, linkAcross[kMostLinks] = {};  // along y
   float weights[kMostSources] = {}, linkWeights[kMostLinks] = {};
   float own = 0;
 
-  void add(int source, double weight) {
+  void add(int source, bool alongY, double weight) {
     sources[count] = source;
+    across[count] = alongY;
     weights[count++] = static_cast<float>(weight);
   }
-  void addLink(int link, double weight) {
+  void addLink(int link, bool alongY, double weight) {
     links[linkCount] = link;
+    linkAcross[linkCount] = alongY;
     linkWeights[linkCount++] = static_cast<float>(weight);
   }
   float value(const float* faces, const std::vector<CutLink>& cut) const {
-    float sum = own * faces[target];
-    for (int k = 0; k < count; ++k) sum += weights[k] * faces[sources[k]];
-    for (int k = 0; k < linkCount; ++k) sum += linkWeights[k] * cut[links[k]].velocity;
-    return sum;
+    float sum[2] = {}, ofLinks[2] = {};
+    for (int k = 0; k < count; ++k) sum[across[k]] += weights[k] * faces[sources[k]];
+    for (int k = 0; k < linkCount; ++k) ofLinks[linkAcross[k]] += linkWeights[k] * cut[links[k]].velocity;
+    return own * faces[target] + (sum[0] + sum[1]) + (ofLinks[0] + ofLinks[1]);
   }
   /// The same, within the range of what it is made of.
   float boundedValue(const float* faces, const std::vector<CutLink>& cut) const {
