@@ -14,6 +14,7 @@ constexpr int kGrain = 32;
 constexpr float kSliver = 0.25f;
 constexpr float kLargest = 1e30f;
 constexpr float kLeastCarried = 0.02f;
+constexpr double kFewQuanta = 8;  // that roundings make of a value
 
 // The smallest power of two q with value <= 2^23 q: twice as much still fits into the exact range of float32.
 float quantumFor(float value) {
@@ -25,9 +26,12 @@ float quantumFor(float value) {
 struct Channel {
   Field mass, value;
   Quantum quantum;
-  float highest = 0;  // largest value
-  float swept = 0;    // the same after the sweeps
+  float highest = 0;   // largest value, or what it was when smoke was put aside that still is
+  float swept = 0;     // the same after the sweeps
+  float kept = 0;      // that of when smoke was put aside
+  double ceiling = 0;  // no less than the largest value, without the rounding of many additions
   Activity active;
+  long added = 0;                             // how often smoke was added
   double emitted = 0, left = 0, rounded = 0;  // in cell areas; rounded: taken by rounding to coarser quanta
 };
 
@@ -36,7 +40,8 @@ struct Channel {
 struct Trapped {
   int channel, cell;
   double mass;
-  int region;  // -1: not told apart, or vanished
+  int region;                           // in which a cell is looked for; -1: in any; or:
+  static constexpr int kVanished = -2;  // its region is gone: it waits for the cell itself to open
 };
 
 }  // namespace
@@ -158,9 +163,12 @@ void Smoke::Impl::release(int channel, const Boundary& b, float highest) {
   if (q.size == 0) return;
   for (Trapped& t : trapped) {
     if (t.channel != channel) continue;
-    if (!volumes.moved() && !(b.volume(cells.i(t.cell), cells.j(t.cell)) > 0)) continue;
-    const int to =
-        volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions}, t.cell, t.region);
+    const bool open = b.volume(cells.i(t.cell), cells.j(t.cell)) > 0;
+    if (!open && (!volumes.moved() || t.region == Trapped::kVanished)) continue;
+    const int to = open && t.region < 0
+                       ? t.cell
+                       : volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions},
+                                                    t.cell, t.region);
     if (to < 0) continue;
     const int i = cells.i(to), j = cells.j(to);
     const double room = 2.0 * highest * volumes.carried()(i, j) - c.mass(i, j);
@@ -330,6 +338,15 @@ void Smoke::add(const Boundary& boundary, int channel, const Field& share, doubl
   s.makeRoom(channel, static_cast<float>(c.highest + std::max(amount, 0.0)));
   if (c.quantum.size == 0) return;  // nothing there to be taken away
   const double inverse = c.quantum.inverse, size = c.quantum.size;
+  // What is added is cut to whole quanta at a height that changes from step to step (by the golden ratio,
+  // from the middle), so that what a source gives in many steps is not off by as many roundings.
+  const double height = 0.5 + 0.6180339887498949 * static_cast<double>(c.added++ % (1 << 20));
+  const double upwards = height - std::floor(height);
+  // No value grows by more than `amount`, whatever is rounded.
+  if (c.highest < c.ceiling - kFewQuanta * size) c.ceiling = c.highest;
+  c.ceiling += std::max(amount, 0.0);
+  const float nearest = static_cast<float>(c.ceiling);
+  const float limit = nearest > c.ceiling ? std::nextafter(nearest, 0.0f) : nearest;
   double added = 0;
   const Impl::Extent extent = s.extentOf(share);
   for (int j = extent.bottom; j < extent.top; ++j) {
@@ -339,13 +356,13 @@ void Smoke::add(const Boundary& boundary, int channel, const Field& share, doubl
     for (int i = extent.left; i < extent.right; ++i) {
       if (!(part[i] > 0) || !(open[i] > 0) || !(was[i] > 0)) continue;
       const double wanted = amount * part[i] * carried[i] * inverse;
-      double more = (carried[i] < kSliver ? std::floor(wanted) : std::floor(wanted + 0.5)) * size;
+      double more = std::floor(wanted + (carried[i] < kSliver ? 0 : upwards)) * size;
       if (m[i] + more < 0) more = -m[i];
       m[i] = static_cast<float>(m[i] + more);
       added += more;
       // Where the value was at the ceiling, a little less than mass over volume, it stays so.
       const float grown = value[i] + static_cast<float>(more / carried[i]), quotient = m[i] / carried[i];
-      value[i] = more > 0 && grown < quotient ? grown : quotient;
+      value[i] = std::min(more > 0 && grown < quotient ? grown : quotient, limit);
       c.highest = std::max(c.highest, value[i]);
       c.active.at(i / Activity::kStrip, j) = 1;
     }
@@ -402,8 +419,13 @@ void Smoke::Impl::end(int channel, const Boundary& b) {
         c.highest = std::max(c.highest, c.value(volumes.cells().i(cell), volumes.cells().j(cell)));
       }
   }
-  if (!trapped.empty()) release(channel, b, before);
+  const auto own = [channel](const Trapped& t) { return t.channel == channel; };
+  if (std::any_of(trapped.begin(), trapped.end(), own)) release(channel, b, before);
   if (c.highest > before) keepBelow(channel, b, before);
+  // As thick as it was it may come back.
+  const bool aside = std::any_of(trapped.begin(), trapped.end(), own);
+  c.kept = aside ? std::max(c.kept, before) : 0;
+  c.highest = std::max(c.highest, c.kept);
   if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.mass, c.value, c.active);
 }
 
@@ -426,7 +448,10 @@ void Smoke::transport(const Boundary& b, const Field& u, const Field& v, double 
   for (int k = 0; k < channels(); ++k) s.makeRoom(k, s.channels[k].highest * volumes.mostCarried());
   if (volumes.moved())
     for (Trapped& t : s.trapped)
-      if (volumes.match().apart() && t.region >= 0) t.region = volumes.match().heir(t.region);
+      if (volumes.match().apart() && t.region >= 0) {
+        const int heir = volumes.match().heir(t.region);
+        t.region = heir >= 0 ? heir : Trapped::kVanished;
+      }
 
   SweptVolumes volume = volumes.swept();
   for (int k = 0; k < channels(); ++k) {

@@ -205,6 +205,22 @@ TEST(SmokeTransport, LedgerOfOpenSidesCloses) {
   EXPECT_GT(t.left, 0.999 * t.emitted);
 }
 
+TEST(SmokeTransport, ManySmallAmountsAddUp) {
+  // A source that adds 0.7 / 60 for 600 steps makes 7, and no more: rounding to whole quanta, each of them up
+  // to 5e-5 of such an amount, does not add up.
+  const int n = 16;
+  Boundary b = emptyBox(n, n, 1.0 / n);
+  ThreadPool pool(1);
+  Smoke smoke(b, pool, 1);
+  const Field all(n, n, 1);
+  for (int k = 0; k < 600; ++k) smoke.add(b, 0, all, 0.7 / 60);
+  const Smoke::Totals t = smoke.totals();
+  std::printf("600 amounts: 7 (1 + %.3g), mass %.3g\n", t.max / 7 - 1, t.mass / 7 - 1);
+  EXPECT_LE(t.max, 7);
+  EXPECT_NEAR(t.max, 7, 7e-6);
+  EXPECT_NEAR(t.mass, 7, 7e-6);
+}
+
 TEST(SmokeTransport, LargeCourantNumbersAreStable) {
   // At a Courant number of 5 the step is cut into parts: bounds and mass hold, and the disk keeps its place.
   const int n = 128;
