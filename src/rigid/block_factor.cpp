@@ -6,9 +6,12 @@ namespace smokebox {
 
 namespace {
 
-/// Inverse of a symmetric positive definite block, by elimination without pivots.
 template <int N>
-std::array<double, N * N> inverseOf(std::array<double, N * N> a) {
+using BlockOf = std::array<double, N * N>;
+
+/// By elimination without pivots.
+template <int N>
+BlockOf<N> inverseOf(BlockOf<N> a) {
   for (int k = 0; k < N; ++k) {
     const double pivot = 1 / a[k * N + k];
     a[k * N + k] = 1;
@@ -20,14 +23,12 @@ std::array<double, N * N> inverseOf(std::array<double, N * N> a) {
       for (int j = 0; j < N; ++j) a[i * N + j] -= share * a[k * N + j];
     }
   }
-  for (int i = 0; i < N; ++i)
-    for (int j = i + 1; j < N; ++j) a[i * N + j] = a[j * N + i] = 0.5 * (a[i * N + j] + a[j * N + i]);
   return a;
 }
 
 template <int N>
-std::array<double, N * N> product(const std::array<double, N * N>& a, const std::array<double, N * N>& b) {
-  std::array<double, N * N> c;
+BlockOf<N> product(const BlockOf<N>& a, const BlockOf<N>& b) {
+  BlockOf<N> c;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) {
       double sum = 0;
@@ -39,8 +40,7 @@ std::array<double, N * N> product(const std::array<double, N * N>& a, const std:
 
 /// c -= a b^T
 template <int N>
-void subtractProduct(std::array<double, N * N>& c, const std::array<double, N * N>& a,
-                     const std::array<double, N * N>& b) {
+void subtractProduct(BlockOf<N>& c, const BlockOf<N>& a, const BlockOf<N>& b) {
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) {
       double sum = 0;
@@ -99,8 +99,8 @@ bool BlockFactor<N>::layOut(int count, const std::vector<std::array<int, 2>>& pa
         target_.push_back(s == t ? -1 - rowAt_[s] : slot(order_[rowAt_[s]], order_[rowAt_[t]]));
   diagonal_.assign(count, Block{});
   inverse_.assign(count, Block{});
-  coupling_.assign(rowAt_.size(), Block{});
   lower_.assign(rowAt_.size(), Block{});
+  upper_.assign(rowAt_.size(), Block{});
   return true;
 }
 
@@ -115,7 +115,8 @@ int BlockFactor<N>::slot(int i, int j) const {
 template <int N>
 void BlockFactor<N>::clear() {
   std::fill(diagonal_.begin(), diagonal_.end(), Block{});
-  std::fill(coupling_.begin(), coupling_.end(), Block{});
+  std::fill(lower_.begin(), lower_.end(), Block{});
+  std::fill(upper_.begin(), upper_.end(), Block{});
 }
 
 template <int N>
@@ -123,12 +124,18 @@ void BlockFactor<N>::factor() {
   const int* target = target_.data();
   for (int k = 0; k < count(); ++k) {
     inverse_[k] = inverseOf<N>(diagonal_[k]);
-    for (int s = columnStart_[k]; s < columnStart_[k + 1]; ++s) {
-      lower_[s] = product<N>(coupling_[s], inverse_[k]);
-      for (int t = columnStart_[k]; t <= s; ++t, ++target)
-        subtractProduct<N>(*target < 0 ? diagonal_[-1 - *target] : coupling_[*target], lower_[s],
-                           coupling_[t]);
-    }
+    const int begin = columnStart_[k], end = columnStart_[k + 1];
+    // Row s becomes L; of two rows, (s, t) lies below the diagonal and (t, s) above, stored transposed.
+    for (int s = begin; s < end; ++s) lower_[s] = product<N>(lower_[s], inverse_[k]);
+    for (int s = begin; s < end; ++s)
+      for (int t = begin; t <= s; ++t, ++target) {
+        if (*target < 0) {
+          subtractProduct<N>(diagonal_[-1 - *target], lower_[s], upper_[t]);
+        } else {
+          subtractProduct<N>(lower_[*target], lower_[s], upper_[t]);
+          subtractProduct<N>(upper_[*target], upper_[s], lower_[t]);
+        }
+      }
   }
 }
 
@@ -143,16 +150,15 @@ void BlockFactor<N>::solve(std::vector<Row>& x) const {
     }
   }
   for (int k = count() - 1; k >= 0; --k) {
-    Row sum{};
-    const Row& now = x[order_[k]];
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) sum[i] += inverse_[k][i * N + j] * now[j];
+    Row rest = x[order_[k]], result{};
     for (int s = columnStart_[k]; s < columnStart_[k + 1]; ++s) {
       const Row& from = x[order_[rowAt_[s]]];
       for (int i = 0; i < N; ++i)
-        for (int j = 0; j < N; ++j) sum[j] -= lower_[s][i * N + j] * from[i];
+        for (int j = 0; j < N; ++j) rest[j] -= upper_[s][i * N + j] * from[i];
     }
-    x[order_[k]] = sum;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) result[i] += inverse_[k][i * N + j] * rest[j];
+    x[order_[k]] = result;
   }
 }
 
@@ -160,7 +166,7 @@ template <int N>
 std::size_t BlockFactor<N>::bytes() const {
   return (order_.size() + position_.size() + columnStart_.size() + rowAt_.size() + target_.size()) *
              sizeof(int) +
-         (diagonal_.size() + inverse_.size() + coupling_.size() + lower_.size()) * sizeof(Block);
+         (diagonal_.size() + inverse_.size() + lower_.size() + upper_.size()) * sizeof(Block);
 }
 
 template class BlockFactor<2>;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rigid/islands.h"
+#include "rigid/spring_row.h"
 
 namespace smokebox {
 
@@ -23,10 +24,7 @@ double inertiaBetween(const Jacobian& i, const Jacobian& j, const InverseMass& m
   return m.mass * (i.x * j.x + i.y * j.y) + m.inertia * (i.turn * j.turn);
 }
 
-void pushBody(Bodies& bodies, int body, const std::array<Jacobian, 3>& rows, const JointRow& impulse) {
-  if (body < 0) return;
-  Motion& v = bodies.velocity[body];
-  const InverseMass& m = bodies.inverse[body];
+void pushBody(Motion& v, const InverseMass& m, const std::array<Jacobian, 3>& rows, const JointRow& impulse) {
   for (int r = 0; r < 3; ++r) {
     v.x += m.mass * (rows[r].x * impulse[r]);
     v.y += m.mass * (rows[r].y * impulse[r]);
@@ -45,7 +43,7 @@ bool JointIsland::layOut(const std::vector<int>& joints, const std::vector<Joint
   for (const int joint : joints) ends.push_back({all[joint].def.a.body, all[joint].def.b.body});
   for (const auto& pair : ends)
     for (const int body : pair)
-      if (body >= 0) places_.push_back({body, {}, 0});
+      if (body >= 0) places_.push_back({body, {}, 0, {}, 0});
   std::sort(places_.begin(), places_.end(), [](const Place& p, const Place& q) { return p.body < q.body; });
   places_.erase(std::unique(places_.begin(), places_.end(),
                             [](const Place& p, const Place& q) { return p.body == q.body; }),
@@ -95,86 +93,127 @@ JointPlace JointIsland::placeOf(const Link& link) const {
   return place;
 }
 
-void JointIsland::apply(const Link& link, const JointRow& impulse, Bodies& bodies) {
-  pushBody(bodies, link.a, link.rows.a, impulse);
-  pushBody(bodies, link.b, link.rows.b, impulse);
+void JointIsland::apply(const Link& link, const JointRow& impulse, Bodies& bodies) const {
+  if (link.a >= 0) pushBody(bodies.velocity[link.a], places_[link.placeA].inverse, link.rows.a, impulse);
+  if (link.b >= 0) pushBody(bodies.velocity[link.b], places_[link.placeB].inverse, link.rows.b, impulse);
 }
 
 void JointIsland::warmStart(std::vector<Joint>& joints, Bodies& bodies, double h) {
   place(bodies, 0);
-  linear_ = false;
+  linear_ = curved_ = false;
   for (Link& link : links_) {
     Joint& joint = joints[link.joint];
-    const JointDef& def = joint.def;
-    const JointPlace now = placeOf(link);
-    link.rows = jacobiansOf(def, now);
-    link.gap = gapsOf(def, joint.startAngle, now);
-    const double arms = length(def.a.at) + length(def.b.at);
-    link.reach = std::max({arms, def.kind == JointKind::rope ? def.length : 0.0,
-                           def.kind == JointKind::slide ? std::fabs(link.gap[2]) : 0.0, 1e-3});
-    const double away = std::fabs(now.a.position.x) + std::fabs(now.a.position.y) +
-                        std::fabs(now.b.position.x) + std::fabs(now.b.position.y);
-    const int kept = equalities(def.kind);
-    for (int r = 0; r < 3; ++r) {
-      const bool angle = isAngle(def.kind, r);
-      link.tolerance[r] = angle ? 1e-13 + 1e-15 * (std::fabs(now.angleA) + std::fabs(now.angleB))
-                                : 1e-13 * link.reach + 1e-15 * away;
-      const double most = kClosing * (angle ? 1.0 : link.reach);
-      link.goal[r] = link.gap[r] - std::clamp(link.gap[r], -most, most);
-      if (r < kept) joint.on[r] = true;
-    }
-    if (hasDrive(def)) {
-      auto rate = [&](double room, double inside) {
-        return room * inside >= 0 ? room / h : room / std::max(kLimitClosing, h);
-      };
-      Drive& drive = link.drive;
-      const double lower = def.kind == JointKind::rope ? -std::numeric_limits<double>::infinity() : def.lower;
-      const double upper = def.kind == JointKind::rope ? def.length : def.upper;
-      drive.low = rate(lower - link.gap[2], -1);
-      drive.high = rate(upper - link.gap[2], 1);
-      drive.push = def.kind == JointKind::rope ? 0 : def.motorLimit * h;
-      drive.speed = std::clamp(def.motorSpeed, drive.low, std::max(drive.low, drive.high));
-    } else if (kept < 3) {
-      joint.on[2] = false;
-    }
     if (!settled_) joint.impulse = {};
-    apply(link, joint.impulse, bodies);
+    prepare(link, joint, h);
   }
   settled_ = true;
-  factor(joints, bodies);
+  stiffen(joints, bodies, h);
+  for (const Link& link : links_) apply(link, joints[link.joint].impulse, bodies);
+  factor(joints);
 }
 
-void JointIsland::factor(const std::vector<Joint>& joints, const Bodies& bodies) {
+/// Whatever the rows of a joint need to know of the sub-step's start.
+void JointIsland::prepare(Link& link, Joint& joint, double h) {
+  const JointDef& def = joint.def;
+  const JointPlace now = placeOf(link);
+  link.rows = link.atEnd = jacobiansOf(def, now);
+  link.gap = gapsOf(def, joint.startAngle, now);
+  const double arms = length(def.a.at) + length(def.b.at);
+  link.reach = std::max({arms, def.kind == JointKind::rope ? def.length : 0.0,
+                         def.kind == JointKind::slide ? std::fabs(link.gap[2]) : 0.0, 1e-3});
+  const double away = std::fabs(now.a.position.x) + std::fabs(now.a.position.y) +
+                      std::fabs(now.b.position.x) + std::fabs(now.b.position.y);
+  const int kept = equalities(def.kind);
+  for (int r = 0; r < 3; ++r) {
+    const bool angle = isAngle(def.kind, r);
+    link.tolerance[r] = angle ? 1e-13 + 1e-15 * (std::fabs(now.angleA) + std::fabs(now.angleB))
+                              : 1e-13 * link.reach + 1e-15 * away;
+    const double most = kClosing * (angle ? 1.0 : link.reach);
+    link.goal[r] = link.gap[r] - std::clamp(link.gap[r], -most, most);
+    if (r < kept) joint.on[r] = true;
+  }
+  if (hasDrive(def)) {
+    auto rate = [&](double room, double inside) {
+      return room * inside >= 0 ? room / h : room / std::max(kLimitClosing, h);
+    };
+    Drive& drive = link.drive;
+    const double lower = def.kind == JointKind::rope ? -std::numeric_limits<double>::infinity() : def.lower;
+    const double upper = def.kind == JointKind::rope ? def.length : def.upper;
+    drive.low = rate(lower - link.gap[2], -1);
+    drive.high = rate(upper - link.gap[2], 1);
+    drive.push = def.kind == JointKind::rope ? 0 : def.motorLimit * h;
+    drive.speed = std::clamp(def.motorSpeed, drive.low, std::max(drive.low, drive.high));
+  } else if (kept < 3) {
+    joint.on[2] = false;
+  }
+}
+
+/// Inertia of light bodies that are pulled strongly, from the impulses of the last sub-step.
+void JointIsland::stiffen(const std::vector<Joint>& joints, Bodies& bodies, double h) {
+  for (Place& p : places_) p.inverse = bodies.inverse[p.body], p.swing = 0;
+  for (const Link& link : links_) {
+    const Joint& joint = joints[link.joint];
+    Vec2 onB;
+    for (int r = 0; r < 3; ++r) onB = onB + joint.impulse[r] * Vec2{link.rows.b[r].x, link.rows.b[r].y};
+    if (link.a >= 0) {
+      Place& p = places_[link.placeA];
+      p.swing -= dot(rotate(p.frame.turn, joint.def.a.at), onB);
+    }
+    if (link.b >= 0) {
+      Place& p = places_[link.placeB];
+      p.swing += dot(rotate(p.frame.turn, joint.def.b.at), onB);
+    }
+  }
+  for (Place& p : places_) {
+    const double inverse = p.inverse.inertia, squared = h * p.swing * inverse;
+    if (!(squared > 0.25)) continue;
+    const SpringShares shares = springShares(p.swing / h, 0, inverse, h);
+    const double weight = smoothStep((squared - 0.25) / 0.75);
+    const double now = 1 + weight * shares.now * squared, before = 1 + weight * shares.before * squared;
+    p.inverse.inertia = inverse / now;
+    bodies.velocity[p.body].turn *= before / now;
+  }
+}
+
+void JointIsland::factor(const std::vector<Joint>& joints) {
   const InverseMass fixed;
   matrix_.clear();
   for (int k = 0; k < matrix_.count(); ++k) {
     Link& link = links_[k];
     const std::array<bool, 3>& on = joints[link.joint].on;
-    const InverseMass& a = link.a < 0 ? fixed : bodies.inverse[link.a];
-    const InverseMass& b = link.b < 0 ? fixed : bodies.inverse[link.b];
+    const InverseMass& a = link.a < 0 ? fixed : places_[link.placeA].inverse;
+    const InverseMass& b = link.b < 0 ? fixed : places_[link.placeB].inverse;
     BlockFactor<3>::Block& block = matrix_.diagonal(k);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j)
         if (i == j || (on[i] && on[j]))
-          block[3 * i + j] = inertiaBetween(link.rows.a[i], link.rows.a[j], a) +
-                             inertiaBetween(link.rows.b[i], link.rows.b[j], b);
-      double& own = block[4 * i];
-      link.ownInertia[i] = own;
+          block[3 * i + j] = inertiaBetween(link.atEnd.a[i], link.rows.a[j], a) +
+                             inertiaBetween(link.atEnd.b[i], link.rows.b[j], b);
+      link.ownInertia[i] = inertiaBetween(link.rows.a[i], link.rows.a[i], a) +
+                           inertiaBetween(link.rows.b[i], link.rows.b[i], b);
       // A row that moves nothing (the angle between two particles) is left out.
-      own = on[i] && own > 0 ? own * (1 + kSoftening) : 1;
+      if (on[i] && link.ownInertia[i] > 0)
+        block[4 * i] += kSoftening * link.ownInertia[i];
+      else
+        block[4 * i] = 1;
     }
   }
   for (const Coupling& c : couplings_) {
     const Link &row = links_[c.row], &column = links_[c.column];
     const std::array<bool, 3>&rowOn = joints[row.joint].on, &columnOn = joints[column.joint].on;
-    const InverseMass& m = bodies.inverse[c.body];
+    const InverseMass& m = places_[row.a == c.body ? row.placeA : row.placeB].inverse;
     // A joint of a body with itself would have it on both sides; its ends are two bodies.
-    const auto& rows = row.a == c.body ? row.rows.a : row.rows.b;
-    const auto& columns = column.a == c.body ? column.rows.a : column.rows.b;
-    BlockFactor<3>::Block& block = matrix_.coupling(c.slot);
+    const bool rowAtA = row.a == c.body, columnAtA = column.a == c.body;
+    const auto &rows = rowAtA ? row.rows.a : row.rows.b, &rowsAtEnd = rowAtA ? row.atEnd.a : row.atEnd.b;
+    const auto &columns = columnAtA ? column.rows.a : column.rows.b,
+               &columnsAtEnd = columnAtA ? column.atEnd.a : column.atEnd.b;
+    BlockFactor<3>::Block &lower = matrix_.lower(c.slot), &upper = matrix_.upper(c.slot);
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        if (rowOn[i] && columnOn[j]) block[3 * i + j] += inertiaBetween(rows[i], columns[j], m);
+      for (int j = 0; j < 3; ++j) {
+        if (!rowOn[i] || !columnOn[j]) continue;
+        lower[3 * i + j] += inertiaBetween(rowsAtEnd[i], columns[j], m);
+        upper[3 * i + j] += inertiaBetween(columnsAtEnd[j], rows[i], m);
+      }
   }
   matrix_.factor();
 }
@@ -256,15 +295,23 @@ double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) 
     if (!changed && !pushed) {
       if (worst <= 1) return found;
       // It no longer gets better: by rounding, because there is no solution on the curve, or none at all.
-      if (iteration >= 3 && !(worst < 0.7 * before)) {
+      // (A solution that is not approached steadily is another one, with joints turned over.)
+      if (iteration >= 2 && !(worst < 0.5 * before)) {
         if (worst < 1e3) return found;
         if (linear_) {
           settled_ = worst < 1e6;
           return found;
         }
         linear_ = true;
+        for (Link& link : links_) link.atEnd = link.rows;
+        factor(joints);
         before = std::numeric_limits<double>::infinity();
         continue;
+      }
+      if (!linear_ && (curved_ || worst > 0.1 * before)) {
+        curved_ = true;
+        for (Link& link : links_) link.atEnd = jacobiansOf(joints[link.joint].def, placeOf(link));
+        factor(joints);
       }
     }
     if (iteration >= kMostIterations) {
@@ -282,7 +329,7 @@ double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) 
         for (int r = 0; r < 3; ++r) unknowns_[k][r] = joint.on[r] && link.ownInertia[r] > 0 ? -rates[r] : 0;
       }
     }
-    if (changed) factor(joints, bodies);
+    if (changed) factor(joints);
     matrix_.solve(unknowns_);
     for (std::size_t k = 0; k < links_.size(); ++k) {
       Joint& joint = joints[links_[k].joint];

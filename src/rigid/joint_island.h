@@ -2,10 +2,16 @@
 //
 // The constraints hold at the places that bodies have at the sub-step's end, while impulses act along the
 // directions of its start (SHAKE: Ryckaert, Ciccotti, Berendsen 1977): with leapfrog that is symplectic, so
-// the energy of a pendulum does not drift. The matrix of all rows, A = J M^-1 J^T, is factored once a
-// sub-step; Newton's iterations with it find the impulses. Limits, ropes and motors ("drives") have a
-// staircase of impulse over rate; which stair each is on is part of the iteration (a primal-dual active set:
-// Hintermueller, Ito, Kunisch 2002).
+// the energy of a pendulum does not drift. Newton's iterations find the impulses, with the matrix J' M^-1 J^T
+// of all rows: J' is that of the start (J) while this brings the solution nearer fast enough, and then that
+// of the end, without which a heavy load on a light chain is not found. Limits, ropes and motors ("drives")
+// have a staircase of impulse over rate; which stair each is on is part of the iteration (a primal-dual
+// active set: Hintermueller, Ito, Kunisch 2002).
+//
+// A strong pull on a light body swings it faster than the sub-step can follow: w^2 = (arms . forces) /
+// inertia. Where w h > 1/2, the body's inertia in the joints' rows grows to what makes that swing implicit,
+// as that of a spring of this stiffness (spring_row.h; Andrews, Teichmann, Kry 2017: geometric stiffness).
+// Forces at rest stay as they are.
 //
 // Limits: where a body turns by more than about a radian in a sub-step there may be no such impulse; then the
 // island takes its constraints as linear, for that sub-step. Joints that contradict one another pull with
@@ -46,10 +52,11 @@ class JointIsland {
     int joint = 0;
     int a = -1, b = -1;            // bodies; -1: the world
     int placeA = -1, placeB = -1;  // in places_
-    JointJacobians rows;
-    JointRow gap{};         // at the sub-step's start
-    JointRow goal{};        // at its end, of equalities
-    JointRow ownInertia{};  // rate of each row from its own impulse
+    JointJacobians rows;           // at the sub-step's start: what impulses act along
+    JointJacobians atEnd;          // what rates are measured along, in the matrix
+    JointRow gap{};                // at the sub-step's start
+    JointRow goal{};               // at its end, of equalities
+    JointRow ownInertia{};         // rate of each row from its own impulse
     Drive drive;
     double driveGoal = 0;  // rate
     double reach = 0;      // m
@@ -62,21 +69,25 @@ class JointIsland {
     int body = 0;
     Frame frame;
     double angle = 0;
+    InverseMass inverse;
+    double swing = 0;  // N s m: how fast the joints' moment on it falls as it turns
   };
 
   void place(const Bodies& bodies, double h);
   JointPlace placeOf(const Link& link) const;
   JointRow ratesOf(const Link& link, const Joint& joint, const Bodies& bodies, double h) const;
   bool chooseStair(Link& link, Joint& joint, double rate, bool mayJoin, double& impulse) const;
-  void factor(const std::vector<Joint>& joints, const Bodies& bodies);
-  static void apply(const Link& link, const JointRow& impulse, Bodies& bodies);
+  void factor(const std::vector<Joint>& joints);
+  void prepare(Link& link, Joint& joint, double h);
+  void stiffen(const std::vector<Joint>& joints, Bodies& bodies, double h);
+  void apply(const Link& link, const JointRow& impulse, Bodies& bodies) const;
 
   std::vector<Link> links_;
   std::vector<Place> places_;
   std::vector<Coupling> couplings_;
   BlockFactor<3> matrix_;
   std::vector<JointRow> unknowns_;
-  bool linear_ = false, settled_ = true;
+  bool linear_ = false, curved_ = false, settled_ = true;
 };
 
 }  // namespace smokebox

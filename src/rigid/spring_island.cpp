@@ -127,7 +127,7 @@ void SpringIsland::factor(const Bodies& bodies) {
   for (const Coupling& c : couplings_) {
     const Link &row = links_[c.row], &column = links_[c.column];
     const InverseMass& m = bodies.inverse[c.body];
-    BlockFactor<2>::Block& block = matrix_.coupling(c.slot);
+    BlockFactor<2>::Block& block = matrix_.lower(c.slot);
     const bool rowAtA = row.a == c.body, columnAtA = column.a == c.body;
     const Vec2 rowArm = rowAtA ? row.armA : row.armB, columnArm = columnAtA ? column.armA : column.armB;
     const double sign = rowAtA == columnAtA ? 1 : -1;
@@ -138,6 +138,7 @@ void SpringIsland::factor(const Bodies& bodies) {
               sign * (m.mass * dot(row.direction[i], column.direction[j]) +
                       m.inertia * (cross(rowArm, row.direction[i]) * cross(columnArm, column.direction[j])));
   }
+  for (const Coupling& c : couplings_) matrix_.upper(c.slot) = matrix_.lower(c.slot);
   matrix_.factor();
 }
 
