@@ -46,12 +46,14 @@ void SpringSet::beginStep(Bodies& bodies, double dt, int subSteps) {
   for (int k = 0; k < static_cast<int>(moved_.size()); ++k)
     stale_ |= moved_[k] != 2 && moved_[k] != static_cast<char>(bodies.moves(k));
   if (stale_) layOut(bodies);
-  if (!sheet_.empty()) sheet_.beginStep(springs_, bodies, dt / subSteps);
+  for (SpringSheet& sheet : sheets_) sheet.beginStep(springs_, bodies, dt / subSteps);
 }
 
 void SpringSet::layOut(const Bodies& bodies) {
   stale_ = tearing_ = false;
   islands_.clear();
+  const std::vector<SpringSheet> before = std::move(sheets_);
+  sheets_.clear();
   moved_.assign(bodies.count(), 2);
   std::vector<int> numbers, many;
   std::vector<std::array<int, 2>> ends;
@@ -79,26 +81,32 @@ void SpringSet::layOut(const Bodies& bodies) {
         many.push_back(k);
       else
         solveAtOnce({k});
+    if (many.empty()) continue;
+    sheets_.emplace_back();
+    sheets_.back().layOut(many, springs_, before);
+    many.clear();
   }
-  sheet_.layOut(many, springs_, bodies);
+  sheetOf_.assign(springs_.size(), -1);
+  for (std::size_t k = 0; k < sheets_.size(); ++k) sheets_[k].mark(sheetOf_, static_cast<int>(k));
 }
 
 void SpringSet::warmStart(Bodies& bodies, double h) {
   const double before = h_ > 0 ? h_ : h;
   h_ = h;
   for (SpringIsland& island : islands_) island.warmStart(springs_, bodies, clock_, h, before);
-  sheet_.warmStart(bodies, h, before);
+  for (SpringSheet& sheet : sheets_) sheet.warmStart(bodies, h, before);
   clock_.elapsed += h;
 }
 
 double SpringSet::solve(Bodies& bodies, double) {
   double change = 0;
   for (SpringIsland& island : islands_) change = std::max(change, island.solve(springs_, bodies));
-  return std::max(change, sheet_.solve(bodies));
+  for (SpringSheet& sheet : sheets_) change = std::max(change, sheet.solve(bodies));
+  return change;
 }
 
 void SpringSet::endStep(Bodies& bodies) {
-  sheet_.endStep(bodies, h_);
+  for (SpringSheet& sheet : sheets_) sheet.endStep(bodies, h_);
   if (carrying_) {
     for (Spring& spring : springs_) {
       if (!spring.carried) continue;
@@ -117,7 +125,8 @@ void SpringSet::endStep(Bodies& bodies) {
 
 double SpringSet::tension(int spring) const {
   if (!(h_ > 0) || !springs_[spring].there) return 0;
-  return sheet_.has(spring) ? sheet_.tension(spring) : -springs_[spring].impulse / h_;
+  const int sheet = spring < static_cast<int>(sheetOf_.size()) ? sheetOf_[spring] : -1;
+  return sheet >= 0 ? sheets_[sheet].tension(spring) : -springs_[spring].impulse / h_;
 }
 
 double SpringSet::distance(int spring, const Bodies& bodies) const {
@@ -143,8 +152,15 @@ void SpringSet::hashInto(Fnv1a& hash) const {
   }
 }
 
+long SpringSet::iterations() const {
+  long sum = 0;
+  for (const SpringSheet& sheet : sheets_) sum += sheet.iterations();
+  return sum;
+}
+
 std::size_t SpringSet::bytes() const {
-  std::size_t sum = springs_.size() * sizeof(Spring) + moved_.size() + sheet_.bytes();
+  std::size_t sum = springs_.size() * sizeof(Spring) + moved_.size() + sheetOf_.size() * sizeof(int);
+  for (const SpringSheet& sheet : sheets_) sum += sheet.bytes();
   for (const SpringIsland& island : islands_) sum += island.bytes();
   return sum;
 }

@@ -33,6 +33,9 @@ class SpringSet {
   /// Elastic, J.
   double energy(const Bodies& bodies) const;
 
+  /// Conjugate gradient iterations since it was made.
+  long iterations() const;
+
   void hashInto(Fnv1a& hash) const;
   std::size_t bytes() const;
 
@@ -42,7 +45,8 @@ class SpringSet {
 
   std::vector<Spring> springs_;
   std::vector<SpringIsland> islands_;
-  SpringSheet sheet_;
+  std::vector<SpringSheet> sheets_;  // one for each group that hangs together
+  std::vector<int> sheetOf_;         // by spring; -1: it is in an island
   std::vector<char> moved_;  // by body: 1 if it could move when springs were laid out; 2: no spring is there
   StepClock clock_;
   double h_ = 0;  // of the last sub-step, s
