@@ -10,7 +10,9 @@ namespace smokebox {
 
 namespace {
 
-constexpr int kMostIterations = 24;
+constexpr int kMostIterations = 40;
+// Kinetic energy that a solution may have, times that of the linear one.
+constexpr double kMostGain = 1.02;
 constexpr int kLastToJoin = 8;  // iterations after which drives only let go
 // Added to the diagonal, as a share of it: joints that say the same thing twice stay solvable.
 constexpr double kSoftening = 1e-10;
@@ -43,7 +45,7 @@ bool JointIsland::layOut(const std::vector<int>& joints, const std::vector<Joint
   for (const int joint : joints) ends.push_back({all[joint].def.a.body, all[joint].def.b.body});
   for (const auto& pair : ends)
     for (const int body : pair)
-      if (body >= 0) places_.push_back({body, {}, 0, {}, 0});
+      if (body >= 0) places_.push_back({body, {}, 0, {}, 1, 0});
   std::sort(places_.begin(), places_.end(), [](const Place& p, const Place& q) { return p.body < q.body; });
   places_.erase(std::unique(places_.begin(), places_.end(),
                             [](const Place& p, const Place& q) { return p.body == q.body; }),
@@ -101,6 +103,7 @@ void JointIsland::apply(const Link& link, const JointRow& impulse, Bodies& bodie
 void JointIsland::warmStart(std::vector<Joint>& joints, Bodies& bodies, double h) {
   place(bodies, 0);
   linear_ = curved_ = false;
+  phase_ = Phase::asTheyAre;
   for (Link& link : links_) {
     Joint& joint = joints[link.joint];
     if (!settled_) joint.impulse = {};
@@ -150,7 +153,7 @@ void JointIsland::prepare(Link& link, Joint& joint, double h) {
 
 /// Inertia of light bodies that are pulled strongly, from the impulses of the last sub-step.
 void JointIsland::stiffen(const std::vector<Joint>& joints, Bodies& bodies, double h) {
-  for (Place& p : places_) p.inverse = bodies.inverse[p.body], p.swing = 0;
+  for (Place& p : places_) p.inverse = bodies.inverse[p.body], p.swing = 0, p.kept = 1;
   for (const Link& link : links_) {
     const Joint& joint = joints[link.joint];
     Vec2 onB;
@@ -171,8 +174,39 @@ void JointIsland::stiffen(const std::vector<Joint>& joints, Bodies& bodies, doub
     const double weight = smoothStep((squared - 0.25) / 0.75);
     const double now = 1 + weight * shares.now * squared, before = 1 + weight * shares.before * squared;
     p.inverse.inertia = inverse / now;
-    bodies.velocity[p.body].turn *= before / now;
+    p.kept = before / now;
+    bodies.velocity[p.body].turn *= p.kept;
   }
+}
+
+/// The same with the impulses that are known now.
+void JointIsland::stiffenAgain(const std::vector<Joint>& joints, Bodies& bodies, double h) {
+  for (const Link& link : links_) {
+    const JointRow& made = joints[link.joint].impulse;
+    apply(link, {-made[0], -made[1], -made[2]}, bodies);
+  }
+  for (const Place& p : places_) bodies.velocity[p.body].turn /= p.kept;
+  stiffen(joints, bodies, h);
+  for (const Link& link : links_) apply(link, joints[link.joint].impulse, bodies);
+  linear_ = curved_ = false;
+  factor(joints);
+}
+
+double JointIsland::kinetic(const Bodies& bodies) const {
+  double sum = 0;
+  for (const Place& p : places_) {
+    const Motion& v = bodies.velocity[p.body];
+    const InverseMass& m = bodies.inverse[p.body];
+    if (m.mass > 0) sum += 0.5 * (v.x * v.x + v.y * v.y) / m.mass;
+    if (m.inertia > 0) sum += 0.5 * v.turn * v.turn / m.inertia;
+  }
+  return sum;
+}
+
+void JointIsland::goLinear(const std::vector<Joint>& joints) {
+  linear_ = true;
+  for (Link& link : links_) link.atEnd = link.rows;
+  factor(joints);
 }
 
 void JointIsland::factor(const std::vector<Joint>& joints) {
@@ -264,6 +298,7 @@ bool JointIsland::chooseStair(Link& link, Joint& joint, double rate, bool mayJoi
 
 double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) {
   double found = 0, before = std::numeric_limits<double>::infinity();
+  int started = 0;  // iteration at which the phase began
   for (int iteration = 0;; ++iteration) {
     place(bodies, h);
     bool changed = false, pushed = false;
@@ -274,7 +309,7 @@ double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) 
       JointRow rates = ratesOf(link, joint, bodies, h);
       if (hasDrive(joint.def)) {
         double impulse = 0;
-        changed |= chooseStair(link, joint, rates[2], iteration <= kLastToJoin, impulse);
+        changed |= chooseStair(link, joint, rates[2], iteration - started <= kLastToJoin, impulse);
         if (impulse != joint.impulse[2]) {
           const JointRow more{0, 0, impulse - joint.impulse[2]};
           const double rate = std::fabs(more[2]) * link.ownInertia[2];
@@ -293,18 +328,33 @@ double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) 
       }
     }
     if (!changed && !pushed) {
-      if (worst <= 1) return found;
+      if (worst <= 1) {
+        if (phase_ == Phase::stiffened && kinetic(bodies) > kMostGain * probeEnergy_) {
+          phase_ = Phase::linear;
+          goLinear(joints);
+          before = std::numeric_limits<double>::infinity();
+          started = iteration + 1;
+          continue;
+        }
+        if (phase_ != Phase::probe) return found;
+        probeEnergy_ = kinetic(bodies);
+        phase_ = Phase::stiffened;
+        stiffenAgain(joints, bodies, h);
+        before = std::numeric_limits<double>::infinity();
+        started = iteration + 1;
+        continue;
+      }
       // It no longer gets better: by rounding, because there is no solution on the curve, or none at all.
       // (A solution that is not approached steadily is another one, with joints turned over.)
-      if (iteration >= 2 && !(worst < 0.5 * before)) {
+      if (iteration >= started + 2 && !(worst < 0.5 * before)) {
         if (worst < 1e3) return found;
         if (linear_) {
           settled_ = worst < 1e6;
           return found;
         }
-        linear_ = true;
-        for (Link& link : links_) link.atEnd = link.rows;
-        factor(joints);
+        phase_ = phase_ == Phase::asTheyAre ? Phase::probe : Phase::linear;
+        goLinear(joints);
+        started = iteration + 1;
         before = std::numeric_limits<double>::infinity();
         continue;
       }

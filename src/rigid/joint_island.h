@@ -9,9 +9,9 @@
 // active set: Hintermueller, Ito, Kunisch 2002).
 //
 // A strong pull on a light body swings it faster than the sub-step can follow: w^2 = (arms . forces) /
-// inertia. Where w h > 1/2, the body's inertia in the joints' rows grows to what makes that swing implicit,
-// as that of a spring of this stiffness (spring_row.h; Andrews, Teichmann, Kry 2017: geometric stiffness).
-// Forces at rest stay as they are.
+// inertia. Where w h > 1, the body's inertia in the joints' rows grows to what makes that swing implicit, as
+// that of a spring of this stiffness (spring_row.h; Andrews, Teichmann, Kry 2017: geometric stiffness), with
+// damping only above w h = 2. Forces at rest stay as they are.
 //
 // Limits: where a body turns by more than about a radian in a sub-step there may be no such impulse; then the
 // island takes its constraints as linear, for that sub-step. Joints that contradict one another pull with
@@ -70,6 +70,7 @@ class JointIsland {
     Frame frame;
     double angle = 0;
     InverseMass inverse;
+    double kept = 1;   // of its spin, when its inertia grew
     double swing = 0;  // N s m: how fast the joints' moment on it falls as it turns
   };
 
@@ -80,6 +81,9 @@ class JointIsland {
   void factor(const std::vector<Joint>& joints);
   void prepare(Link& link, Joint& joint, double h);
   void stiffen(const std::vector<Joint>& joints, Bodies& bodies, double h);
+  void stiffenAgain(const std::vector<Joint>& joints, Bodies& bodies, double h);
+  double kinetic(const Bodies& bodies) const;
+  void goLinear(const std::vector<Joint>& joints);
   void apply(const Link& link, const JointRow& impulse, Bodies& bodies) const;
 
   std::vector<Link> links_;
@@ -87,6 +91,11 @@ class JointIsland {
   std::vector<Coupling> couplings_;
   BlockFactor<3> matrix_;
   std::vector<JointRow> unknowns_;
+  /// Of a sub-step: the constraints as they are; if that fails, as linear, to know the impulses; as they are,
+  /// with inertia to match these; and if that fails too, as linear.
+  enum class Phase { asTheyAre, probe, stiffened, linear };
+  Phase phase_ = Phase::asTheyAre;
+  double probeEnergy_ = 0;  // of the probe's solution, J
   bool linear_ = false, curved_ = false, settled_ = true;
 };
 

@@ -51,16 +51,17 @@ void SpringSheet::layOut(const std::vector<int>& springs, const std::vector<Spri
   for (std::vector<double>* each : {&length_, &perStretch_, &perRate_, &hardness_, &squared_})
     each->assign(links_.size(), -1);  // a length unlike any: to be prepared
   nodeStart_.assign(1, 0);
-  end_.clear();
+  start_.clear(), end_.clear();
   for (int k = 0, s = 0; k < static_cast<int>(body_.size()); ++k) {
-    for (; s < static_cast<int>(links_.size()) && links_[s].a == k; ++s) end_.push_back(links_[s].b);
+    for (; s < static_cast<int>(links_.size()) && links_[s].a == k; ++s)
+      start_.push_back(k), end_.push_back(links_[s].b);
     nodeStart_.push_back(s);
   }
 
   const std::size_t count = body_.size();
   mass_.assign(count, 0), inverse_.assign(count, 0);
   for (std::vector<Pair>* each :
-       {&place_, &moved_, &impulse_, &velocity_, &rest_, &direction_, &product_, &change_})
+       {&place_, &moved_, &impulse_, &biases_, &velocity_, &rest_, &direction_, &product_, &change_})
     each->assign(count, Pair{0, 0});
   fresh_.assign(count, 1);
   for (const SpringSheet& sheet : before)
@@ -117,6 +118,7 @@ void SpringSheet::warmStart(Bodies& bodies, double h, double hBefore) {
     moved_[k] = fresh_[k] ? hBefore * Pair{v.x, v.y} : place - place_[k];
     place_[k] = place;
     fresh_[k] = 0;
+    biases_[k] = Pair{0, 0};
     v.x += inverse_[k] * impulse_[k][0];
     v.y += inverse_[k] * impulse_[k][1];
   }
@@ -130,8 +132,8 @@ void SpringSheet::findForces(int begin, int end, double h, double perSecond) {
   double x[kBlock], y[kBlock], beforeX[kBlock], beforeY[kBlock], bias[kBlock], across[kBlock];
   const int count = end - begin;
   for (int k = 0; k < count; ++k) {
-    const Link& link = links_[begin + k];
-    const Pair between = place_[link.b] - place_[link.a], before = moved_[link.b] - moved_[link.a];
+    const int a = start_[begin + k], b = end_[begin + k];
+    const Pair between = place_[b] - place_[a], before = moved_[b] - moved_[a];
     x[k] = between[0], y[k] = between[1];
     beforeX[k] = before[0], beforeY[k] = before[1];
   }
@@ -153,6 +155,8 @@ void SpringSheet::findForces(int begin, int end, double h, double perSecond) {
     matrix_[s] = {hard * x[k] * x[k], hard * x[k] * y[k], hard * y[k] * y[k]};
     bias_[s] = Pair{bias[k] * x[k], bias[k] * y[k]};
     if (across[k] > 0.25) stiffenAcross(s, h, perSecond);
+    biases_[start_[s]] -= bias_[s];
+    biases_[end_[s]] += bias_[s];
   }
 }
 
@@ -208,12 +212,8 @@ double SpringSheet::solve(Bodies& bodies) {
   for (std::size_t k = 0; k < count; ++k) {
     const Motion& v = bodies.velocity[body_[k]];
     velocity_[k] = Pair{v.x, v.y};
-    rest_[k] = impulse_[k];
+    rest_[k] = impulse_[k] + biases_[k];
     change_[k] = Pair{0, 0};
-  }
-  for (std::size_t s = 0; s < links_.size(); ++s) {
-    rest_[links_[s].a] -= bias_[s];
-    rest_[links_[s].b] += bias_[s];
   }
   multiply(velocity_, rest_);
   Pair made{0, 0}, missing{0, 0}, own{0, 0};

@@ -54,9 +54,9 @@ class SpringSheet {
   double multiply(const std::vector<Pair>& p, std::vector<Pair>& out) const;
   void keepEnergy();
 
-  std::vector<Link> links_;     // in the order of their nodes a
-  std::vector<int> nodeStart_;  // by node: the first link of which it is a; one more at the end
-  std::vector<int> end_;        // b again
+  std::vector<Link> links_;       // in the order of their nodes a
+  std::vector<int> nodeStart_;    // by node: the first link of which it is a; one more at the end
+  std::vector<int> start_, end_;  // a and b again, close together
   // Impulse on b = -(bias + matrix (vb - va)), by link; and what it is made of: bias = perStretch C + perRate
   // u0, hardness, and (w h)^2.
   std::vector<Matrix> matrix_;
@@ -69,6 +69,7 @@ class SpringSheet {
   std::vector<double> mass_, inverse_;  // 0 for what does not move
   std::vector<Pair> place_, moved_;     // at the sub-step's start; within the last sub-step
   std::vector<Pair> impulse_;           // of the springs, in this sub-step
+  std::vector<Pair> biases_;            // that of its springs, with their signs
   std::vector<Pair> velocity_, rest_, direction_, product_, change_;
   double h_ = 0, size_ = 0, total_ = 0;  // mean length; mass of what moves
   long iterations_ = 0;

@@ -12,6 +12,7 @@ struct LinksWorld {
   SpringSet springs;
   JointSet joints;
   Vec2 gravity;
+  double drag = 0;  // 1/s, to come to rest
   int sweeps = 1;
   double change = 0;  // of the last sweep
 
@@ -48,21 +49,17 @@ struct LinksWorld {
     return joints.add(def, bodies);
   }
 
-  /// Velocities are given for the start of the first sub-step; from then on they belong to middles. Half a
-  /// sub-step of gravity is all that lies between for what is free.
-  void halfKick(double h) {
-    for (int k = 0; k < bodies.count(); ++k)
-      if (bodies.moves(k))
-        bodies.velocity[k].x -= h / 2 * gravity.x, bodies.velocity[k].y -= h / 2 * gravity.y;
-  }
-
   void step(double dt, int subSteps = 1) {
     const double h = dt / subSteps;
     joints.beginStep(bodies, dt, subSteps);
     springs.beginStep(bodies, dt, subSteps);
     for (int s = 0; s < subSteps; ++s) {
-      for (int k = 0; k < bodies.count(); ++k)
-        if (bodies.moves(k)) bodies.velocity[k].x += h * gravity.x, bodies.velocity[k].y += h * gravity.y;
+      for (int k = 0; k < bodies.count(); ++k) {
+        if (!bodies.moves(k)) continue;
+        Motion& v = bodies.velocity[k];
+        const double keep = 1 / (1 + drag * h);
+        v = {keep * v.x + h * gravity.x, keep * v.y + h * gravity.y, keep * v.turn, 0};
+      }
       joints.warmStart(bodies, h);
       springs.warmStart(bodies, h);
       for (int sweep = 0; sweep < sweeps; ++sweep)
