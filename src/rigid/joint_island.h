@@ -9,9 +9,9 @@
 // active set: Hintermueller, Ito, Kunisch 2002).
 //
 // A strong pull on a light body swings it faster than the sub-step can follow: w^2 = (arms . forces) /
-// inertia. Where w h > 1, the body's inertia in the joints' rows grows to what makes that swing implicit, as
-// that of a spring of this stiffness (spring_row.h; Andrews, Teichmann, Kry 2017: geometric stiffness), with
-// damping only above w h = 2. Forces at rest stay as they are.
+// inertia. Where w h > 1/2, the body's inertia in the joints' rows grows to what makes that swing implicit,
+// as that of a spring of this stiffness (spring_row.h; Andrews, Teichmann, Kry 2017: geometric stiffness).
+// Forces at rest stay as they are.
 //
 // Limits: where a body turns by more than about a radian in a sub-step there may be no such impulse; then the
 // island takes its constraints as linear, for that sub-step. Joints that contradict one another pull with
