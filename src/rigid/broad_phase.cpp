@@ -6,6 +6,7 @@ namespace smokebox {
 
 namespace {
 constexpr double kRoom = 0.1;  // of a fat box around what it has to hold, in reaches of the body
+constexpr double kStepsAhead = 3;
 
 bool mayMeet(const Bodies& bodies, int a, int b) {
   if (!bodies.moves(a) && !bodies.moves(b)) return false;
@@ -45,7 +46,9 @@ bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt) {
   box = joined(box, shifted(box, way));
   if (bodies.moves(body)) box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
   if (listed_[body] && fat_[body].holds(box)) return false;
-  fat_[body] = grown(box, kRoom * (bodies.moves(body) ? shape.reach : 0));
+  // Along its way some more: what flies on does not ask for a new box in every step.
+  fat_[body] =
+      grown(joined(box, shifted(box, kStepsAhead * way)), kRoom * (bodies.moves(body) ? shape.reach : 0));
   listed_[body] = 1;
   return true;
 }

@@ -44,25 +44,72 @@ void warmStart(Bodies& bodies, const std::vector<Contact>& contacts) {
       pushApart(bodies, contact, contact.points[k], contact.points[k].impulseN, contact.points[k].impulseT);
 }
 
+namespace {
+
+/// Both normal impulses of a contact at once: the 2 x 2 linear complementarity problem by its four cases
+/// (Murty; as in Catto's block solver). `speed`: what each point's parting speed lacks without any impulse.
+void solveBoth(const double k[3], const double speed[2], double impulse[2]) {
+  const double det = k[0] * k[2] - k[1] * k[1];
+  impulse[0] = (k[1] * speed[1] - k[2] * speed[0]) / det;
+  impulse[1] = (k[1] * speed[0] - k[0] * speed[1]) / det;
+  if (impulse[0] >= 0 && impulse[1] >= 0) return;
+  impulse[0] = std::max(-speed[0] / k[0], 0.0);
+  impulse[1] = 0;
+  if (k[1] * impulse[0] + speed[1] >= 0) return;
+  impulse[0] = 0;
+  impulse[1] = std::max(-speed[1] / k[2], 0.0);
+}
+
+}  // namespace
+
 double solve(Bodies& bodies, std::vector<Contact>& contacts, double h) {
   double largest = 0;
-  for (Contact& contact : contacts)
+  for (Contact& contact : contacts) {
+    double lacks[2] = {0, 0};
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactPoint& p = contact.points[k];
+      const double gap = p.gap + gapMoved(bodies, contact, p);
+      lacks[k] = partingSpeed(bodies, contact, p) + std::max(gap, 0.0) / h;
+    }
+    double total[2] = {0, 0};
+    const ContactPoint &p0 = contact.points[0], &p1 = contact.points[1];
+    bool both = contact.count == 2 && p0.massN > 0 && p1.massN > 0;
+    if (both) {
+      const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
+      const Vec2 n = contact.normal;
+      const double k[3] = {1 / p0.massN,
+                           ma.mass + mb.mass + ma.inertia * cross(p0.armA, n) * cross(p1.armA, n) +
+                               mb.inertia * cross(p0.armB, n) * cross(p1.armB, n),
+                           1 / p1.massN};
+      both = k[0] * k[2] - k[1] * k[1] > 1e-6 * k[0] * k[2];  // else two points at one place
+      if (both) {
+        const double free[2] = {lacks[0] - k[0] * p0.impulseN - k[1] * p1.impulseN,
+                                lacks[1] - k[1] * p0.impulseN - k[2] * p1.impulseN};
+        solveBoth(k, free, total);
+      }
+    }
     for (int k = 0; k < contact.count; ++k) {
       ContactPoint& p = contact.points[k];
-      const double gap = p.gap + gapMoved(bodies, contact, p);
-      const double vn = partingSpeed(bodies, contact, p);
-      const double total = std::max(p.impulseN - p.massN * (vn + std::max(gap, 0.0) / h), 0.0);
-      const double change = total - p.impulseN;
-      p.impulseN = total;
+      if (!both) {
+        if (k == 1)
+          lacks[1] =
+              partingSpeed(bodies, contact, p) + std::max(p.gap + gapMoved(bodies, contact, p), 0.0) / h;
+        total[k] = std::max(p.impulseN - p.massN * lacks[k], 0.0);
+      }
+      const double change = total[k] - p.impulseN;
+      p.impulseN = total[k];
       pushApart(bodies, contact, p, change, 0);
       if (p.massN > 0) largest = std::max(largest, std::abs(change) / p.massN);
-
+    }
+    for (int k = 0; k < contact.count; ++k) {
+      ContactPoint& p = contact.points[k];
       const Vec2 slip = bodies.velocityAt(contact.b, p.armB) - bodies.velocityAt(contact.a, p.armA);
       const double vt = dot(perpendicular(contact.normal), slip), most = contact.friction * p.impulseN;
       const double tangential = std::clamp(p.impulseT - p.massT * vt, -most, most);
       pushApart(bodies, contact, p, 0, tangential - p.impulseT);
       p.impulseT = tangential;
     }
+  }
   return largest;
 }
 

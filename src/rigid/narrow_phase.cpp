@@ -19,12 +19,15 @@ constexpr double kCalmTurn = 0.1;  // rad
 constexpr double kStray = 0.02;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
 constexpr double kReuse = 2e-3;
+// Lively ones, after this share: less where they bounce.
+constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 // A lively pair that is this many sub-steps apart is left alone for as long.
 constexpr double kAhead = 4;
 // Beyond this share of the thinner one's width in a sub-step, a pair is swept.
 constexpr double kSwept = 0.25;
-// Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way.
-constexpr double kNear = 0.02;
+// Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
+// what they may move until they are looked at again.
+constexpr double kNear = 0.01;
 // Swept pairs are stopped at this share of the thinner one's width from each other.
 constexpr double kTarget = 1e-3;
 
@@ -33,17 +36,6 @@ double turningReach(const BodyShape& shape) {
   const ConvexPiece& first = shape.pieces[0];
   return shape.pieces.size() == 1 && first.points.size() == 1 && first.points[0] == Vec2{0, 0} ? 0
                                                                                                : shape.reach;
-}
-
-/// Largest speed of any point of one against any of the other.
-double relativeSpeed(const Bodies& bodies, int a, int b) {
-  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
-  return length(va.linear() - vb.linear()) + std::abs(va.turn) * turningReach(*bodies.def[a].shape) +
-         std::abs(vb.turn) * turningReach(*bodies.def[b].shape);
-}
-
-double thinner(const Bodies& bodies, int a, int b) {
-  return std::min(bodies.def[a].shape->thinnest, bodies.def[b].shape->thinnest);
 }
 
 bool touching(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const Frame& fb, double margin) {
@@ -86,20 +78,33 @@ double distanceFrom(const BodyShape& shape, const Frame& frame, Vec2 point) {
   return length(out);
 }
 
-/// Are they surely farther apart than `margin`? Cheap; a body that does not turn tells more.
-bool surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) {
+/// Are they surely farther apart than `margin`? A body that does not turn tells more.
+bool surelyApartByBoxes(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) {
   const BodyShape &a = *bodies.def[key.a].shape, &b = *bodies.def[key.b].shape;
   if (a.tree.nodes().empty() || b.tree.nodes().empty()) return true;
   const Vec2 pa = bodies.positionNow(key.a), pb = bodies.positionNow(key.b) + shift;
-  const Vec2 between = pb - pa;
-  const double reach = a.reach + b.reach + margin;
-  if (dot(between, between) > reach * reach) return true;
   if (bodies.moved[key.a].turn == 0 && distanceFrom(a, {pa, bodies.turn[key.a]}, pb) > b.reach + margin)
     return true;
   return bodies.moved[key.b].turn == 0 && distanceFrom(b, {pb, bodies.turn[key.b]}, pa) > a.reach + margin;
 }
 
 }  // namespace
+
+double NarrowPhase::relativeSpeed(const Bodies& bodies, int a, int b) const {
+  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
+  return length(va.linear() - vb.linear()) + std::abs(va.turn) * measures_[a].turningReach +
+         std::abs(vb.turn) * measures_[b].turningReach;
+}
+
+bool NarrowPhase::surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) const {
+  const Vec2 between = bodies.positionNow(key.b) + shift - bodies.positionNow(key.a);
+  const double reach = measures_[key.a].reach + measures_[key.b].reach + margin;
+  return dot(between, between) > reach * reach || surelyApartByBoxes(bodies, key, shift, margin);
+}
+
+double NarrowPhase::thinner(int a, int b) const {
+  return std::min(measures_[a].thinnest, measures_[b].thinnest);
+}
 
 void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
                        bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
@@ -127,7 +132,7 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
     double share = 0;
     Frame ta = fa, tb = fb;
     if (swept) {
-      const double target = kTarget * thinner(bodies, key.a, key.b);
+      const double target = kTarget * thinner(key.a, key.b);
       if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
         const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
         const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
@@ -186,16 +191,20 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   h_ = dt / subSteps;
   elapsed_ = 0;
   expected_.resize(count);
+  measures_.resize(count);
   travelled_.resize(count, 0);
   stirred_.assign(count, 0);
   for (int b = 0; b < count; ++b) {
     if (!bodies.there[b]) continue;
+    const BodyShape& shape = *bodies.def[b].shape;
+    measures_[b] = {turningReach(shape), shape.thinnest, shape.reach};
     const double fall = length(gravity) * std::abs(bodies.def[b].gravityScale) * dt * dt;
-    expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * bodies.def[b].shape->thinnest : 0};
+    expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * shape.thinnest : 0};
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
   calmFirst_.assign(pairs.size() + 1, 0);
+  pairsListed_ = false;
   calm_.clear();
   lively_.clear();
   pairs_.clear();
@@ -203,7 +212,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     BodyPair& pair = pairs[k];
     const int a = pair.key.a, b = pair.key.b;
     calmFirst_[k] = static_cast<int>(calm_.size());
-    const double thin = thinner(bodies, a, b);
+    const double thin = thinner(a, b);
     const double way = relativeSpeed(bodies, a, b) * dt;
     const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
     const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
@@ -242,24 +251,48 @@ void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, i
   pairs_.push_back(made);
 }
 
+void NarrowPhase::listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs) {
+  pairsFirst_.assign(bodies.count() + 2, 0);
+  for (const BodyPair& pair : pairs) {
+    ++pairsFirst_[pair.key.a + 2];
+    ++pairsFirst_[pair.key.b + 2];
+  }
+  for (int b = 2; b < bodies.count() + 2; ++b) pairsFirst_[b] += pairsFirst_[b - 1];
+  pairsAt_.resize(2 * pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairsAt_[pairsFirst_[pairs[k].key.a + 1]++] = static_cast<int>(k);
+    pairsAt_[pairsFirst_[pairs[k].key.b + 1]++] = static_cast<int>(k);
+  }
+  pairsListed_ = true;
+}
+
 void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double h,
                           const std::vector<double>* since) {
   next_.clear();
   for (LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
-    const double thin = thinner(bodies, a, b);
+    const double thin = thinner(a, b);
     const double way = relativeSpeed(bodies, a, b) * h;
     pair.swept = way > kSwept * thin;
     const int first = static_cast<int>(next_.size());
     pair.clear -= way;
     if (pair.clear < 0) {
-      const double near = way + kNear * thin, margin = pair.swept ? way : kAhead * near;
+      const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
+      const double reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
+      const double near = way + kNear * thin + reuse, margin = pair.swept ? way : kAhead * near;
       if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), margin)) {
         pair.clear = margin - near;
       } else {
         find(bodies, pair.key, broad.shiftOf(pair.key), pair.swept ? way : near, h, pair.swept,
              lively_.data() + pair.first, pair.count, next_,
              {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
+        if (static_cast<int>(next_.size()) > first && !pair.swept) pair.clear = reuse;
+      }
+    } else {
+      next_.insert(next_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
+      for (std::size_t k = first; k < next_.size(); ++k) {
+        next_[k].total = next_[k].approach = 0;
+        next_[k].struck = false;
       }
     }
     pair.first = first;
@@ -284,7 +317,7 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
         std::any_of(begin, end, [](const Contact& c) { return c.struck; })) {
       next_.insert(next_.end(), begin, end);
     } else {
-      const double thin = thinner(bodies, a, b), way = relativeSpeed(bodies, a, b) * h;
+      const double thin = thinner(a, b), way = relativeSpeed(bodies, a, b) * h;
       pair.swept = way > kSwept * thin;
       pair.clear = 0;
       const double margin = pair.swept ? way : way + kNear * thin;
@@ -309,25 +342,28 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
     const Motion &m = bodies.moved[b], &w = way[b];
     const Vec2 off = m.linear() + w.linear() - t * e.velocity.linear();
     const double turned = m.turn + w.turn - t * e.velocity.turn;
-    if (length(off) + std::abs(turned) * turningReach(*bodies.def[b].shape) <= e.room) continue;
+    const double left = e.room - std::abs(turned) * measures_[b].turningReach;
+    if (left >= 0 && dot(off, off) <= left * left) continue;
     stirred_[b] = 1;
     leaving_.push_back(b);
   }
   if (leaving_.empty()) return false;
   bool any = false;
   const auto& pairs = broad.pairs();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const PairKey& key = pairs[k].key;
-    if (livelyPair_[k] || (!stirred_[key.a] && !stirred_[key.b])) continue;
-    livelyPair_[k] = 1;
-    any = true;
-    const int first = calmFirst_[k], count = calmFirst_[k + 1] - first;
-    for (int c = first; c < first + count; ++c) {
-      blocks.drop(c, calm_[c]);
-      dropped_[c] = 1;
+  if (!pairsListed_) listPairs(bodies, pairs);
+  for (const int body : leaving_)
+    for (int at = pairsFirst_[body]; at < pairsFirst_[body + 1]; ++at) {
+      const int k = pairsAt_[at];
+      if (livelyPair_[k]) continue;
+      livelyPair_[k] = 1;
+      any = true;
+      const int first = calmFirst_[k], count = calmFirst_[k + 1] - first;
+      for (int c = first; c < first + count; ++c) {
+        blocks.drop(c, calm_[c]);
+        dropped_[c] = 1;
+      }
+      makeLively(pairs[k].key, k, calm_.data() + first, count);
     }
-    makeLively(key, static_cast<int>(k), calm_.data() + first, count);
-  }
   late_.clear();
   broad.extend(bodies, leaving_, gravity, timeLeft, late_);
   for (const PairKey& key : late_) {
@@ -342,7 +378,7 @@ void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, dou
   for (const LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
     const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
-    const double thin = thinner(bodies, a, b);
+    const double thin = thinner(a, b);
     // What lies ahead after the last impact; before it the ways were other ones.
     const double past = since ? std::max((*since)[a], (*since)[b]) / h : 0;
     auto part = [&](int body, double share) -> Motion {
@@ -355,8 +391,8 @@ void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, dou
       return {now.position + m.linear(), turnedBy(now.turn, m.turn)};
     };
     const Motion wa = part(a, 1 - past), wb = part(b, 1 - past);
-    const double most = length(wa.linear() - wb.linear()) + std::abs(wa.turn) * turningReach(sa) +
-                        std::abs(wb.turn) * turningReach(sb);
+    const double most = length(wa.linear() - wb.linear()) + std::abs(wa.turn) * measures_[a].turningReach +
+                        std::abs(wb.turn) * measures_[b].turningReach;
     if (most <= kSwept * thin) continue;
     const Frame fa = frame(a);
     Frame fb = frame(b);
@@ -376,7 +412,7 @@ void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, dou
 void NarrowPhase::endStep(const Bodies& bodies, BroadPhase& broad) {
   for (int b = 0; b < bodies.count(); ++b) {
     const Motion& m = bodies.moved[b];
-    travelled_[b] += length(m.linear()) + std::abs(m.turn) * turningReach(*bodies.def[b].shape);
+    travelled_[b] += length(m.linear()) + std::abs(m.turn) * measures_[b].turningReach;
   }
   for (std::size_t k = 0; k < calm_.size(); ++k)
     for (int p = 0; p < calm_[k].count; ++p)  // bring it up to date: it may be used again

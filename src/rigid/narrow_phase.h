@@ -50,13 +50,23 @@ class NarrowPhase {
     PairKey key;
     int first = 0, count = 0;  // in lively_
     bool swept = false;        // could pass through each other within a sub-step
-    double clear = 0;          // they surely stay apart until they have moved so far against each other, m
+    double clear = 0;          // what was found holds until they have moved so far against each other, m
     int pair = -1;             // in the broad phase's list; -1: found within the step
   };
   struct Expected {
     Motion velocity;  // at the step's start
     double room = 0;  // how far its points may be from where that takes them
   };
+  /// What is asked of a body's shape all the time, side by side.
+  struct Measures {
+    double turningReach = 0;  // how far from the centre of mass a turn moves anything
+    double thinnest = 0, reach = 0;
+  };
+  /// Largest speed of any point of one against any of the other.
+  double relativeSpeed(const Bodies& bodies, int a, int b) const;
+  double thinner(int a, int b) const;
+  /// Are they surely farther apart than `margin`? Cheap.
+  bool surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) const;
   /// The moment within the sub-step from which contacts are looked for, and what impacts before it have
   /// changed of the two bodies' ways.
   struct Later {
@@ -65,16 +75,20 @@ class NarrowPhase {
   };
   void find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
             const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
+  void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
 
   std::vector<Contact> calm_, lively_, next_, memory_;
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
+  std::vector<Measures> measures_;
   std::vector<Expected> expected_;
   std::vector<double> travelled_;  // by body: longest way of any of its points so far, m
   std::vector<char> stirred_;
-  std::vector<char> livelyPair_;  // by index of the broad phase's pairs
-  std::vector<int> calmFirst_;    // by pair: range in calm_
+  std::vector<char> livelyPair_;           // by index of the broad phase's pairs
+  std::vector<int> calmFirst_;             // by pair: range in calm_
+  std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in
+  bool pairsListed_ = false;
   std::vector<PiecePair> pieces_;
   std::vector<PairKey> late_;
   std::vector<int> leaving_;

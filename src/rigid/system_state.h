@@ -54,6 +54,12 @@ struct RigidSystem::State {
   bool anyStruck = false, mayBounce = false;
   std::vector<Motion> way;  // all of that
 
+  /// What a sub-step does to a body's velocity by itself.
+  struct Drive {
+    Vec2 pull;                       // m/s^2
+    double linear = 1, angular = 1;  // what damping leaves
+  };
+  std::vector<Drive> drives;
   BroadPhase broad;
   NarrowPhase narrow;
   ContactBlocks blocks;

@@ -13,11 +13,11 @@ namespace smokebox {
 namespace {
 // A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
 // are fewer than the second number.
-constexpr long kManySweeps = 8000, kTwoSweeps = 30000;
+constexpr long kManySweeps = 6000, kTwoSweeps = 30000;
 // Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
 constexpr double kSettled = 1e-3;
-// ... or by this share of what the first sweep changed.
-constexpr double kSettledShare = 1e-3;
+// ... or by this share of what the first sweep changed beyond that: of impacts.
+constexpr double kSettledShare = 1e-2;
 // Of an overlap, in each sub-step.
 constexpr double kSeparateShare = 0.2;
 // Overlapping bodies are moved apart at this speed at most, m/s.
@@ -89,6 +89,13 @@ void RigidSystem::State::beginStep(double step) {
       fresh[b] = 0;
     }
   }
+  drives.resize(bodies.count());
+  for (int b = 0; b < bodies.count(); ++b) {
+    const BodyDef& def = bodies.def[b];
+    drives[b] = bodies.moves(b) ? Drive{def.gravityScale * gravity, 1 / (1 + h * def.linearDamping),
+                                        1 / (1 + h * def.angularDamping)}
+                                : Drive{};
+  }
   touches.clear();
   broad.update(bodies, gravity, dt);
   narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
@@ -112,15 +119,11 @@ void RigidSystem::State::beginStep(double step) {
 void RigidSystem::State::predict(double h) {
   if (timeLeft < 1.5 * h) before = bodies.velocity;  // the last one
   for (int b = kWalls; b < bodies.count(); ++b) {
-    if (!bodies.moves(b)) continue;
-    const BodyDef& def = bodies.def[b];
     Motion& v = bodies.velocity[b];
-    v.x += h * def.gravityScale * gravity.x;
-    v.y += h * def.gravityScale * gravity.y;
-    const double linear = 1 / (1 + h * def.linearDamping), angular = 1 / (1 + h * def.angularDamping);
-    v.x *= linear;
-    v.y *= linear;
-    v.turn *= angular;
+    const Drive& drive = drives[b];
+    v.x = drive.linear * (v.x + h * drive.pull.x);
+    v.y = drive.linear * (v.y + h * drive.pull.y);
+    v.turn *= drive.angular;
   }
   narrow.refresh(bodies, broad, h, nullptr);
 }
@@ -224,13 +227,14 @@ void RigidSystem::State::solveContacts(double h) {
   warmStartAll(h);
   const long points =
       1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
-  double settled = kSettled * h * length(gravity) + 1e-9;
+  // The more there are, the less it matters that each one is settled to the last.
+  double settled = kSettled * (1 + 1e-3 * points) * h * length(gravity) + 1e-9;
   for (int round = 0; round < 3; ++round) {
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       const double change = sweep(h, round == 0 && sweeps == 1);
-      if (sweeps == 1) settled = std::max(settled, kSettledShare * change);
+      if (sweeps == 1) settled = std::max(settled, kSettledShare * (change - h * length(gravity)));
       if (change <= settled) break;
-      if (sweeps * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
+      if ((sweeps + 1) * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
     }
     findWays(h, false);
     // Who would stray from the way expected of it has its pairs looked at again, before it moves.
