@@ -3,6 +3,8 @@
 // Within a step a body's place is that at the step's start and what it has moved since; velocities belong to
 // the middle of a sub-step (leapfrog).
 #pragma once
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "rigid/system.h"
@@ -43,7 +45,14 @@ struct Bodies {
   std::vector<double> angleRad;
   std::vector<Turn> turn;  // of angleRad
   std::vector<char> there;
+  /// Pairs that a pin, weld or slide joins: they pass through each other. The lower number first, sorted,
+  /// once for each joint.
+  std::vector<std::pair<int, int>> joined;
 
+  bool areJoined(int a, int b) const {
+    const std::pair<int, int> pair = std::minmax(a, b);
+    return !joined.empty() && std::binary_search(joined.begin(), joined.end(), pair);
+  }
   int count() const { return static_cast<int>(def.size()); }
   bool moves(int body) const { return inverse[body].mass > 0; }
   Vec2 positionNow(int body) const { return position[body] + moved[body].linear(); }

@@ -10,7 +10,7 @@ constexpr double kStepsAhead = 3;
 
 bool mayMeet(const Bodies& bodies, int a, int b) {
   if (!bodies.moves(a) && !bodies.moves(b)) return false;
-  return (bodies.def[a].ignore & bodies.def[b].ignore) == 0;
+  return (bodies.def[a].ignore & bodies.def[b].ignore) == 0 && !bodies.areJoined(a, b);
 }
 }  // namespace
 
@@ -119,7 +119,7 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
     for (; fresh != found_.end() && *fresh < key; ++fresh) merged_.push_back({*fresh});
     if (fresh != found_.end() && *fresh == key) ++fresh;
     if (refitted_[key.a] || refitted_[key.b]) {
-      if (!listed_[key.a] || !listed_[key.b]) continue;
+      if (!listed_[key.a] || !listed_[key.b] || bodies.areJoined(key.a, key.b)) continue;
       if (!fat_[key.a].meets(shifted(fat_[key.b], shiftOf(key)))) continue;
     }
     merged_.push_back(pair);

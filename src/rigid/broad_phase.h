@@ -37,6 +37,11 @@ class BroadPhase {
   void extend(const Bodies& bodies, const std::vector<int>& which, Vec2 gravity, double dt,
               std::vector<PairKey>& found);
 
+  /// Whom it may meet has changed: they are searched for anew.
+  void lookAgain(int body) {
+    if (body < static_cast<int>(listed_.size())) listed_[body] = 0;
+  }
+
   std::vector<BodyPair>& pairs() { return pairs_; }
   Vec2 shiftOf(const PairKey& key) const { return {key.sx * walls_.width, key.sy * walls_.height}; }
 

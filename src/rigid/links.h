@@ -32,6 +32,7 @@ enum class JointKind { pin, weld, slide, rope };
 ///   if a is the world), the angle stays; `lower` and `upper` bound the way along it, m; the motor moves b at
 ///   `motorSpeed` m/s with at most `motorLimit` N.
 /// - rope: the anchors are never farther apart than `length`, m.
+/// Bodies that a pin, weld or slide joins pass through each other.
 struct JointDef {
   JointKind kind = JointKind::pin;
   Anchor a, b;

@@ -61,13 +61,37 @@ void RigidSystem::remove(int body) {
   s.bodies.inverse[body] = {};
   s.bodies.velocity[body] = {};
   s.springs.removeAt(body);
+  for (int k = 0; k < s.joints.count(); ++k) {
+    const JointDef& joint = s.joints.def(k);
+    if (s.joints.isThere(k) && (joint.a.body == body || joint.b.body == body)) s.setJoined(joint, false);
+  }
   s.joints.removeAt(body);
 }
 
 int RigidSystem::addSpring(const SpringDef& def) { return state_->springs.add(def, state_->bodies); }
-int RigidSystem::addJoint(const JointDef& def) { return state_->joints.add(def, state_->bodies); }
+int RigidSystem::addJoint(const JointDef& def) {
+  state_->setJoined(def, true);
+  return state_->joints.add(def, state_->bodies);
+}
 void RigidSystem::removeSpring(int spring) { state_->springs.remove(spring); }
-void RigidSystem::removeJoint(int joint) { state_->joints.remove(joint); }
+void RigidSystem::removeJoint(int joint) {
+  State& s = *state_;
+  if (s.joints.isThere(joint)) s.setJoined(s.joints.def(joint), false);
+  s.joints.remove(joint);
+}
+
+void RigidSystem::State::setJoined(const JointDef& joint, bool on) {
+  if (joint.kind == JointKind::rope || joint.a.body < 0 || joint.b.body < 0) return;
+  const std::pair<int, int> pair = std::minmax(joint.a.body, joint.b.body);
+  auto& joined = bodies.joined;
+  const auto at = std::lower_bound(joined.begin(), joined.end(), pair);
+  if (on)
+    joined.insert(at, pair);
+  else if (at != joined.end() && *at == pair)
+    joined.erase(at);
+  broad.lookAgain(pair.first);
+  broad.lookAgain(pair.second);
+}
 
 // --- events and scripts
 // ----------------------------------------------------------------------------------------------------------

@@ -25,6 +25,8 @@ struct RigidSystem::State {
 
   void addWalls();
   void setInverse(int body);
+  /// Lets the bodies of a joint pass through each other, or no longer.
+  void setJoined(const JointDef& joint, bool on);
   double sweep(double h, bool first);
   void findCalmShare();
   void findWays(double h, bool withStruck);

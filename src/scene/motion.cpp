@@ -12,7 +12,7 @@ Pose between(const Pose& a, const Pose& b, double share) {
   return {a.position + share * (b.position - a.position), a.angleRad + share * (b.angleRad - a.angleRad)};
 }
 
-Pose keyframed(const Motion::Keyframes& motion, double t) {
+Pose keyframed(const MotionScript::Keyframes& motion, double t) {
   const std::vector<Keyframe>& frames = motion.frames;
   const double first = frames.front().at, last = frames.back().at;
   if (motion.repeat && t > first && last > first)
@@ -29,7 +29,7 @@ Pose keyframed(const Motion::Keyframes& motion, double t) {
 
 }  // namespace
 
-Pose Motion::poseAt(double t, const Pose& rest) const {
+Pose MotionScript::poseAt(double t, const Pose& rest) const {
   if (const auto* steady = std::get_if<Steady>(&how_))
     return {rest.position + t * steady->velocity, rest.angleRad + t * steady->spinRad};
   if (const auto* keyframes = std::get_if<Keyframes>(&how_))

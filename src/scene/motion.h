@@ -20,7 +20,7 @@ struct Keyframe {
   Pose pose;  // complete: what the file leaves out is held from the keyframe before
 };
 
-class Motion {
+class MotionScript {
  public:
   struct Steady {
     Vec2 velocity;
@@ -34,10 +34,10 @@ class Motion {
     std::optional<Expression> x, y, angleDegrees;
   };  // of t; what is left out is held
 
-  Motion() = default;  // stands still
-  explicit Motion(Steady steady) : how_(steady) {}
-  explicit Motion(Keyframes keyframes) : how_(std::move(keyframes)) {}
-  explicit Motion(Formula formula) : how_(std::move(formula)) {}
+  MotionScript() = default;  // stands still
+  explicit MotionScript(Steady steady) : how_(steady) {}
+  explicit MotionScript(Keyframes keyframes) : how_(std::move(keyframes)) {}
+  explicit MotionScript(Formula formula) : how_(std::move(formula)) {}
 
   /// The absolute pose at time t of a solid whose pose at rest (position and angle of the file) is `rest`.
   Pose poseAt(double t, const Pose& rest) const;

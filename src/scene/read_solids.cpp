@@ -10,10 +10,10 @@
 namespace smokebox {
 namespace {
 
-Motion readKeyframes(MapReader& map, const YamlNode& node, const Pose& rest, double duration) {
+MotionScript readKeyframes(MapReader& map, const YamlNode& node, const Pose& rest, double duration) {
   Reader& reader = map.reader();
   const std::string name = inside(map.name(), "keyframes");
-  Motion::Keyframes keyframes;
+  MotionScript::Keyframes keyframes;
   map.boolean("smooth", keyframes.smooth);
   map.boolean("repeat", keyframes.repeat);
   if (!reader.isList(node, name)) return {};
@@ -44,12 +44,12 @@ Motion readKeyframes(MapReader& map, const YamlNode& node, const Pose& rest, dou
   }
   if (keyframes.repeat && keyframes.frames.size() < 2)
     reader.error(map.find("repeat")->mark, "a motion that repeats needs at least two keyframes");
-  return Motion(std::move(keyframes));
+  return MotionScript(std::move(keyframes));
 }
 
-Motion readFormula(Reader& reader, const YamlNode& node, const std::string& name) {
+MotionScript readFormula(Reader& reader, const YamlNode& node, const std::string& name) {
   MapReader map(reader, node, name);
-  Motion::Formula formula;
+  MotionScript::Formula formula;
   auto part = [&](const char* key, std::optional<Expression>& into) {
     if (const YamlNode* found = map.find(key)) into = reader.expression(*found, inside(name, key), "t");
   };
@@ -57,19 +57,19 @@ Motion readFormula(Reader& reader, const YamlNode& node, const std::string& name
   part("y", formula.y);
   part("angle", formula.angleDegrees);
   map.finish();
-  return Motion(std::move(formula));
+  return MotionScript(std::move(formula));
 }
 
-Motion readMotion(Reader& reader, const YamlNode& node, const std::string& name, const Pose& rest,
-                  double duration) {
+MotionScript readMotion(Reader& reader, const YamlNode& node, const std::string& name, const Pose& rest,
+                        double duration) {
   MapReader map(reader, node, name);
   const YamlNode* keyframes = map.find("keyframes");
   const YamlNode* formula = map.find("expression");
   const bool steady = map.has("velocity") || map.has("spin");
-  Motion motion;
+  MotionScript motion;
   if ((keyframes != nullptr) + (formula != nullptr) + steady > 1)
     reader.error(map.mark(), "`" + name + "` must be one of: velocity and spin, keyframes, expression");
-  Motion::Steady uniform;
+  MotionScript::Steady uniform;
   double spin = 0;
   map.vector("velocity", uniform.velocity);
   if (map.number("spin", spin)) uniform.spinRad = radians(spin);
@@ -84,7 +84,7 @@ Motion readMotion(Reader& reader, const YamlNode& node, const std::string& name,
     if (formula) {
       motion = readFormula(reader, *formula, inside(name, "expression"));
     } else if (moves) {
-      motion = Motion(uniform);
+      motion = MotionScript(uniform);
     }
   }
   map.finish();

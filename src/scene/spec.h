@@ -83,9 +83,9 @@ struct TemperatureSpec {
 
 struct SolidSpec {
   std::string name;
-  PlacedShape shape;  // pose at rest: what `position` and `angle` say (zero for world coordinates)
-  Motion motion;      // absolute pose of the shape's (0, 0) as a function of time
-  double drag = 0;    // 0 full slip .. 1 no slip; the default follows the viscosity
+  PlacedShape shape;    // pose at rest: what `position` and `angle` say (zero for world coordinates)
+  MotionScript motion;  // absolute pose of the shape's (0, 0) as a function of time
+  double drag = 0;      // 0 full slip .. 1 no slip; the default follows the viscosity
   double bounce = 0, friction = 0.5;
   std::optional<Color> color;
   bool report = false;  // force and torque in the figures

@@ -208,6 +208,30 @@ TEST(WorldBodies, ThoseThatShareAGroupPassThroughEachOther) {
   }
 }
 
+TEST(WorldBodies, ThoseThatAJointJoinsPassThroughEachOther) {
+  // Truth: two bars that overlap at their pin swing freely; when the pin is cut they part, and gently.
+  const std::string bars =
+      "bodies:\n- {name: a, shape: {box: {size: [1, 0.2]}}, position: [1.5, 2], mass: 1}\n"
+      "- {name: b, shape: {box: {size: [1, 0.2]}}, position: [2.3, 2], mass: 1, spin: 90}\n"
+      "joints: [{name: j, pin: [a, b], at: [1.9, 2]}]\n";
+  World world = worldOf(bars + "events: [{at: 1.9, cut: j}]\n");
+  EXPECT_EQ(SceneDocument::parse(kRoom + bars, "t.yaml").problems().size(), 0u);
+  world.step();  // the pin takes what of the spin it does not allow
+  const double before = world.figures().energyBodies;
+  int most = 0;
+  while (world.stepCount() < 120) {
+    world.step();
+    most = std::max(most, world.figures().contacts);
+  }
+  EXPECT_EQ(most, 0);
+  EXPECT_NEAR(world.figures().energyBodies, before, 1e-3 * before);
+  run(world, 1.95);
+  EXPECT_GT(world.figures().contacts, 0);
+  run(world, 4);
+  EXPECT_LT(world.figures().overlap, 1e-3);
+  EXPECT_LT(world.figures().energyBodies, 1.1 * before);
+}
+
 TEST(WorldBodies, RestOnTheFloorAndAreCounted) {
   // Truth: a box comes to rest on the bottom of the domain with two points of contact, and hardly sinks in.
   World world =
