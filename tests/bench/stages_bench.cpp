@@ -1,6 +1,7 @@
 // Where a step of the yardstick scene (plume_scene.h) goes: a row for each stage and size, one thread, to a
 // divergence of 1e-5. Of the last 60 of 160 steps, each row shows the one in which the stage's time for its
-// work is the median. The time is that of the stage in that step; the label says what bounds it. Counters:
+// work is the median. Wants an idle machine. The time is that of the stage in that step; the label says what
+// bounds it. Counters:
 //   share_of_step   of the whole step's time
 //   ns_a_cell       of that stage
 //   bytes_a_cell    that must move at least, see leastMoved()
