@@ -24,6 +24,8 @@ PictureFrame frameOf(const Snapshot& snapshot, int width, int height) {
                                        [&](const SolidPicture& s) { return s.name == camera.follow; });
     if (followed != snapshot.solids.end())
       frame.centre = followed->pose.position + camera.center.value_or(Vec2{});
+    else if (snapshot.followed)
+      frame.centre = *snapshot.followed + camera.center.value_or(Vec2{});
   }
   const Vec2 upperLeft = frame.toPixels({0, grid.height()});
   const Vec2 lowerRight = frame.toPixels({grid.width(), 0});

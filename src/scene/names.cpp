@@ -108,6 +108,14 @@ Movables findMovables(Reader& reader, const YamlNode& node, const SceneSpec& spe
   return found;
 }
 
+void checkFollowed(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name) {
+  std::vector<std::string> known;
+  for (const SolidSpec& solid : spec.solids) known.push_back(solid.name);
+  for (const BodySpec& body : spec.bodies) known.push_back(body.name);
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    reader.error(node.mark, "no solid or body is named `" + name + "`", suggestion(name, known));
+}
+
 bool isMovable(const SceneSpec& spec, const std::string& name) {
   return std::any_of(spec.bodies.begin(), spec.bodies.end(),
                      [&](const BodySpec& b) { return b.family == name || b.name == name; }) ||

@@ -23,6 +23,9 @@ std::optional<HoldSpec> findHold(Reader& reader, const YamlNode& node, const Sce
 /// All bodies, particles and cloths that a name stands for. Reports what is none.
 Movables findMovables(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name);
 
+/// Reports what a probe or the camera cannot follow: all but a solid, a body or a particle.
+void checkFollowed(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name);
+
 /// Is it the name of a body, a particle or a cloth?
 bool isMovable(const SceneSpec& spec, const std::string& name);
 

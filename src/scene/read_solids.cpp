@@ -152,7 +152,7 @@ ProbeSpec readProbe(Reader& reader, const YamlNode& node, const std::string& nam
     probe.region = readPlacedShape(reader, *region, inside(name, "region"));
   if (!map.isWrong() && map.has("at") == map.has("region"))
     reader.error(map.mark(), "`" + name + "` must have either `at` or `region`");
-  if (map.text("follow", probe.follow)) checkSolidName(reader, *map.find("follow"), spec, probe.follow);
+  if (map.text("follow", probe.follow)) checkFollowed(reader, *map.find("follow"), spec, probe.follow);
   map.finish();
   return probe;
 }

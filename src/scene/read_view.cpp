@@ -1,6 +1,7 @@
 // view: layers, captions, background, camera
 #include <algorithm>
 
+#include "scene/names.h"
 #include "scene/nearest.h"
 #include "scene/sections.h"
 #include "scene/tree_path.h"
@@ -127,7 +128,7 @@ void readCamera(Reader& reader, const YamlNode& node, const SceneSpec& spec, Cam
   double height = 0;
   if (map.vector("center", center)) camera.center = center;
   if (map.number("height", height, kPositive)) camera.height = height;
-  if (map.text("follow", camera.follow)) checkSolidName(reader, *map.find("follow"), spec, camera.follow);
+  if (map.text("follow", camera.follow)) checkFollowed(reader, *map.find("follow"), spec, camera.follow);
   map.finish();
 }
 

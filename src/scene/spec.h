@@ -95,7 +95,7 @@ struct ProbeSpec {
   std::string name;
   std::optional<Vec2> at;             // a point ...
   std::optional<PlacedShape> region;  // ... or a region, in world coordinates at the start
-  std::string follow;                 // the solid that it moves rigidly with; empty: stands still
+  std::string follow;                 // the solid or body that it moves rigidly with; empty: stands still
 };
 
 // --- events
@@ -180,7 +180,7 @@ struct CaptionSpec {
 struct CameraSpec {
   std::optional<Vec2> center;    // default: the domain's middle
   std::optional<double> height;  // metres seen vertically; default: all of the domain fits
-  std::string follow;            // a solid's name: the centre is relative to its position (default (0, 0))
+  std::string follow;            // a solid or body: the centre is relative to its position (default (0, 0))
 };
 
 struct ViewSpec {

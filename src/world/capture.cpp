@@ -96,7 +96,11 @@ void World::capture(Snapshot& snapshot) const {
         {solids_.spec(k).name, k, std::move(outlines), solids_.pose(k), solids_.spec(k).color});
   }
   if (rigid_) rigid_->capture(time(), snapshot);
-  probes_.capture(solids_, snapshot.probes);
+  const std::string& follow = spec_.view.camera.follow;
+  snapshot.followed.reset();
+  if (const auto at = follow.empty() || !rigid_ ? std::nullopt : rigid_->carried(follow))
+    snapshot.followed = at->now.position;
+  probes_.capture([this](const std::string& name) { return carried(name); }, snapshot.probes);
 
   snapshot.captions.clear();
   for (const CaptionSpec& caption : spec_.view.captions)

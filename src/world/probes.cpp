@@ -7,13 +7,14 @@ namespace smokebox {
 
 namespace {
 
-// Where a point of the start has been carried by the solid that it follows.
-Vec2 carried(Vec2 p, const ProbeSpec& spec, const SolidScripts& solids) {
-  const int solid = spec.follow.empty() ? -1 : solids.find(spec.follow);
-  if (solid < 0) return p;
-  const Pose &start = solids.startPose(solid), &now = solids.pose(solid);
-  const Vec2 local = transformed(p - start.position, Pose{{}, -start.angleRad});
-  return transformed(local, now);
+// Where a point of the start has been carried by what it follows.
+Vec2 carriedPoint(Vec2 p, const Carried& by) {
+  const Vec2 local = transformed(p - by.start.position, Pose{{}, -by.start.angleRad});
+  return transformed(local, by.now);
+}
+
+std::optional<Carried> carrierOf(const ProbeSpec& spec, const FindCarried& find) {
+  return spec.follow.empty() ? std::nullopt : find(spec.follow);
 }
 
 // Bilinear value at (x, y), in cells from the sample (0, 0), over the samples whose weight is not 0: what
@@ -44,19 +45,21 @@ ProbeSet::ProbeSet(const std::vector<ProbeSpec>& specs, double tolerance) {
   }
 }
 
-Vec2 ProbeSet::pointNow(const Probe& probe, const SolidScripts& solids) const {
-  return carried(*probe.spec.at, probe.spec, solids);
+Vec2 ProbeSet::pointNow(const Probe& probe, const FindCarried& find) const {
+  const auto by = carrierOf(probe.spec, find);
+  return by ? carriedPoint(*probe.spec.at, *by) : *probe.spec.at;
 }
 
-std::vector<Outline> ProbeSet::regionNow(const Probe& probe, const SolidScripts& solids) const {
+std::vector<Outline> ProbeSet::regionNow(const Probe& probe, const FindCarried& find) const {
   std::vector<Outline> region = probe.region;
-  for (Outline& outline : region)
-    for (Vec2& point : outline) point = carried(point, probe.spec, solids);
+  if (const auto by = carrierOf(probe.spec, find))
+    for (Outline& outline : region)
+      for (Vec2& point : outline) point = carriedPoint(point, *by);
   return region;
 }
 
 void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* smoke, const HeatStage* heat,
-                    double pressureScale, const SolidScripts& solids, std::vector<ProbeFigures>& out) {
+                    double pressureScale, const FindCarried& find, std::vector<ProbeFigures>& out) {
   const Grid& grid = boundary.grid;
   const int nx = grid.nx, ny = grid.ny;
   out.clear();
@@ -75,7 +78,7 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
     auto warmthAt = [&](int i, int j) { return heat ? heat->at(i, j) : 0; };
     auto warmthOpen = [&](int i, int j) { return heat && heat->isOpen(i, j) ? 1 : 0; };
     if (probe.spec.at) {
-      const Vec2 p = pointNow(probe, solids);
+      const Vec2 p = pointNow(probe, find);
       const double x = p.x / grid.h, y = p.y / grid.h;
       figures.velocity.x = interpolated(x, y - 0.5, nx + 1, ny, fluid->u(), boundary.openX);
       figures.velocity.y = interpolated(x - 0.5, y, nx, ny + 1, fluid->v(), boundary.openY);
@@ -85,7 +88,7 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
       figures.smoke = interpolated(x - 0.5, y - 0.5, nx, ny, smokeAt, boundary.volume);
     } else {
       if (share_.empty()) share_ = Field(nx, ny);
-      coverShare(grid, regionNow(probe, solids), share_);
+      coverShare(grid, regionNow(probe, find), share_);
       double area = 0, u = 0, v = 0, pressure = 0, mass = 0, warmth = 0;
       for (int j = 0; j < ny; ++j)
         for (int i = 0; i < nx; ++i) {
@@ -110,15 +113,15 @@ void ProbeSet::read(const Boundary& boundary, const Fluid* fluid, const Smoke* s
   }
 }
 
-void ProbeSet::capture(const SolidScripts& solids, std::vector<ProbePicture>& out) const {
+void ProbeSet::capture(const FindCarried& find, std::vector<ProbePicture>& out) const {
   out.clear();
   for (const Probe& probe : probes_) {
     ProbePicture picture;
     picture.name = probe.spec.name;
     if (probe.spec.at)
-      picture.at = pointNow(probe, solids);
+      picture.at = pointNow(probe, find);
     else
-      picture.region = regionNow(probe, solids);
+      picture.region = regionNow(probe, find);
     out.push_back(std::move(picture));
   }
 }

@@ -28,6 +28,14 @@ void RigidStage::record(StepFigures& figures) const {
   }
 }
 
+std::optional<Carried> RigidStage::carried(const std::string& name) const {
+  for (const Body& body : bodies_)
+    if (body.spec.name == name && isThere(body))
+      return Carried{{transformed(body.centre, body.spec.pose), body.spec.pose.angleRad},
+                     {system_.position(body.id), system_.angleRad(body.id)}};
+  return {};
+}
+
 void RigidStage::capture(double time, Snapshot& snapshot) const {
   snapshot.bodies.clear();
   snapshot.particles.clear();

@@ -14,6 +14,7 @@
 #include "scene/spec.h"
 #include "world/cloth_mesh.h"
 #include "world/figures.h"
+#include "world/probes.h"
 #include "world/snapshot.h"
 #include "world/solid_scripts.h"
 
@@ -52,6 +53,8 @@ class RigidStage {
   void capture(double time, Snapshot& snapshot) const;
   void hashInto(Fnv1a& hash) const { system_.hashInto(hash); }
   const RigidSystem& system() const { return system_; }
+  /// Poses of a body's centre of mass at the start and now; none if it is not there.
+  std::optional<Carried> carried(const std::string& name) const;
   std::size_t bytes() const { return system_.bytes(); }
 
  private:

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -113,6 +114,7 @@ struct Snapshot {
   std::vector<ClothPicture> cloths;
   std::vector<TouchPicture> touches;
   std::vector<TrailPicture> trails;
+  std::optional<Vec2> followed;  // where the body is that the camera follows
   std::vector<ProbePicture> probes;
   std::vector<std::string> captions;  // all that are up now
   ViewSpec view;                      // as events have left it, without layers that are not shown

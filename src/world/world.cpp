@@ -223,6 +223,12 @@ void World::gatherCovered() {
   std::copy(bodies.begin(), bodies.end(), covered_.begin() + static_cast<std::ptrdiff_t>(solids.size()));
 }
 
+std::optional<Carried> World::carried(const std::string& name) const {
+  const int solid = solids_.find(name);
+  if (solid >= 0) return Carried{solids_.startPose(solid), solids_.pose(solid)};
+  return rigid_ ? rigid_->carried(name) : std::nullopt;
+}
+
 std::vector<std::string> World::takeNotices() {
   return rigid_ ? rigid_->takeNotices() : std::vector<std::string>();
 }

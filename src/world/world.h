@@ -87,6 +87,8 @@ class World {
   /// All that parts the fluid: the solids, then the bodies.
   const std::vector<MovingSolid>& covered() const { return rigid_ ? covered_ : solids_.moving(); }
   void gatherCovered();
+  /// Of a solid or a body; none if a body is not there.
+  std::optional<Carried> carried(const std::string& name) const;
   void coverGrid(bool shapesMoved);
   void addForces();
   void projectFluid();

@@ -28,8 +28,9 @@ void World::recordFigures() {
     figures_.smoke = {totals.mass, totals.emitted, totals.left, totals.min, totals.max};
   }
   if (!probes_.empty())
-    probes_.read(boundary_, fluid(), smoke_ ? &smoke_->smoke() : nullptr, heat(), pressureScale, solids_,
-                 figures_.probes);
+    probes_.read(
+        boundary_, fluid(), smoke_ ? &smoke_->smoke() : nullptr, heat(), pressureScale,
+        [this](const std::string& name) { return carried(name); }, figures_.probes);
 }
 
 SummaryFigures World::summary() const {

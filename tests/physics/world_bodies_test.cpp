@@ -328,6 +328,21 @@ TEST(WorldBodies, PartTheFluidAsSolidsDo) {
   EXPECT_GT(fastest, 0.1);
 }
 
+TEST(WorldBodies, ProbesAndTheCameraFollowThem) {
+  // Truth: a probe beside a body that turns by 90 degrees is above it then; the camera is where the body is.
+  World world = worldOf(
+      "bodies: [{name: ball, shape: {circle: {radius: 0.1}}, position: [1, 2], velocity: [1, 0], spin: 90}]\n"
+      "probes: [{name: p, at: [1.5, 2], follow: ball}]\n"
+      "view: {layers: [probes], camera: {follow: ball, height: 1}}\n");
+  run(world, 1);
+  Snapshot snapshot;
+  world.capture(snapshot);
+  EXPECT_NEAR(snapshot.probes.at(0).at.x, 2, 1e-9);
+  EXPECT_NEAR(snapshot.probes.at(0).at.y, 2.5, 1e-9);
+  ASSERT_TRUE(snapshot.followed.has_value());
+  EXPECT_NEAR(snapshot.followed->x, 2, 1e-9);
+}
+
 TEST(WorldBodies, ASheetTears) {
   // Truth: pulled apart beyond its strain a cloth loses cells; one that cannot tear keeps them all.
   for (const bool tears : {true, false}) {

@@ -362,7 +362,7 @@ TEST(SceneErrors, ProbesAndCamerasFollowWhatIsThere) {
       kDomain + "solids: [{name: gate, shape: {circle: {radius: .1}}, position: [1, .5]}]\n";
   expectFault(head + "probes: [{at: [1, .5], follow: gat}]\n", {"s.yaml:3:32: ", "did you mean `gate`?"});
   expectFault(head + "probes: [{name: p}]\n", {"s.yaml:3:10: ", "either `at` or `region`"});
-  expectFault(head + "view: {camera: {follow: car}}\n", {"s.yaml:3:25: ", "no solid is named `car`"});
+  expectFault(head + "view: {camera: {follow: car}}\n", {"s.yaml:3:25: ", "no solid or body is named `car`"});
   EXPECT_EQ(problemsOf(head + "view: {camera: {follow: gate, height: 1}}\n"), "");
 }
 
