@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/coverage.h"
+
 namespace smokebox {
 
 namespace {
