@@ -67,7 +67,7 @@ TEST(RigidImpact, CentralImpactsAreExactAtAnyMomentOfAStep) {
             worstMomentum = std::max(worstMomentum, momentum);
           }
   EXPECT_LT(worst, 1e-7);
-  EXPECT_LT(worstFaces, 1e-5);  // without bounce a face's two points are solved in sweeps
+  EXPECT_LT(worstFaces, 1e-3);  // without bounce a face is left to the sweeps, which stop early
   EXPECT_LT(worstMomentum, 1e-12);
 }
 

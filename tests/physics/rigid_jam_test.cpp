@@ -1,0 +1,154 @@
+// What cannot be satisfied: bodies wedged, crushed, stuck into each other. It always ends, and gently.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "support/rigid_polygons.h"
+#include "support/rigid_world.h"
+
+namespace smokebox::test {
+namespace {
+
+const auto kBox = bodyShape(BoxShape{{1, 1}});
+constexpr double kG = 10;
+
+BodyDef rough(const std::shared_ptr<const BodyShape>& shape, Vec2 position, double mass = 0) {
+  BodyDef def = bodyAt(shape, position, mass);
+  def.friction = 0.5;
+  return def;
+}
+
+/// How many bodies have their centre outside of the domain.
+int outside(const RigidWorld& world, double width, double height) {
+  int count = 0;
+  for (int b = 4; b < world.system.bodyCount(); ++b) {
+    const Vec2 at = world.at(b);
+    if (world.system.def(b).mass > 0) count += !(at.x > 0 && at.x < width && at.y > 0 && at.y < height);
+  }
+  return count;
+}
+
+double fastest(const RigidWorld& world) {
+  double speed = 0;
+  for (int b = 4; b < world.system.bodyCount(); ++b)
+    if (world.system.isThere(b) && world.system.def(b).mass > 0)
+      speed = std::max(speed, length(world.velocity(b)));
+  return speed;
+}
+
+/// The time of each step, ms.
+class StepTimes {
+ public:
+  void step(RigidWorld& world) {
+    const auto start = std::chrono::steady_clock::now();
+    world.steps(1);
+    times_.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  double worst() const { return *std::max_element(times_.begin(), times_.end()); }
+  double median() const {
+    std::vector<double> sorted = times_;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2), sorted.end());
+    return sorted[sorted.size() / 2];
+  }
+
+ private:
+  std::vector<double> times_;
+};
+
+TEST(RigidJam, BodiesThatOverlapAtTheStartPartGently) {
+  // Truth: without gravity, bodies that are put into each other part without ever moving by their velocity;
+  // with it, none gets faster than gravity makes it, bounce or not.
+  for (const double g : {0.0, kG})
+    for (const double e : {0.0, 0.8})
+      for (const double overlap : {0.05, 0.5, 0.95}) {
+        RigidWorld world(closedBox(20, 20, e, 0.5), {0, -g});
+        std::vector<int> boxes;
+        for (int k = 0; k < 5; ++k) {
+          BodyDef def = rough(kBox, {10 + 0.01 * k, 0.5 + k * (1 - overlap)});
+          def.bounce = e;
+          boxes.push_back(world.add(def));
+        }
+        double speed = 0;
+        for (int k = 0; k < 180; ++k) {
+          world.steps(1);
+          // From rest, what gravity gives in the time, and over the height that they are lifted to.
+          speed = std::max(speed, fastest(world) - g * (k + 1) * RigidWorld::kStep);
+        }
+        EXPECT_LT(speed, 1e-6) << "g " << g << " bounce " << e << " overlap " << overlap;
+        EXPECT_LT(world.system.totals().kineticEnergy, 5 * kG * 5) << overlap;
+        world.seconds(5);
+        EXPECT_LT(world.system.totals().overlap, 0.01)
+            << "g " << g << " bounce " << e << " overlap " << overlap;
+      }
+}
+
+TEST(RigidJam, ABodyInsideAnotherComesOut) {
+  // Truth: a disk put right into the middle of a big block leaves it, and nothing flies off.
+  RigidWorld world(closedBox(40, 40, 0, 0.5), {0, -kG});
+  world.add(rough(bodyShape(BoxShape{{4, 4}}), {20, 2}));
+  const int disk = world.add(rough(bodyShape(CircleShape{0.3}), {20.1, 2.2}));
+  double speed = 0;
+  for (int k = 0; k < 300; ++k) world.steps(1), speed = std::max(speed, fastest(world));
+  EXPECT_LT(speed, std::sqrt(2 * kG * 5));
+  EXPECT_LT(world.system.totals().overlap, 0.01);
+  EXPECT_GT(length(world.at(disk) - Vec2{20, 2}), 1);
+}
+
+TEST(RigidJam, ClosingWallsCrushWhatIsBetweenThem) {
+  // Truth: two walls that close on bodies until these overlap by half: each step ends, all stays finite, and
+  // when the walls open again nothing has been shot off.
+  RigidWorld world(closedBox(40, 20, 0, 0.5), {0, -kG});
+  const auto wall = solidShape(BoxShape{{1, 16}});
+  const int left = world.add(solidAt(wall, {5, 8})), right = world.add(solidAt(wall, {35, 8}));
+  Dice dice(2);
+  for (int k = 0; k < 12; ++k)
+    world.add(rough(k % 2 ? kBox : randomPolygon(dice, k % 4 == 0), {12 + 1.4 * k, 1}));
+  double speed = 0;
+  StepTimes times;
+  for (int k = 0; k < 300; ++k) {
+    const double x = 5 + 13 * std::min(1.0, k / 150.0);  // down to 3 m for twelve metres of bodies
+    world.system.moveTo(left, {x, 8}, 0);
+    world.system.moveTo(right, {40 - x, 8}, 0);
+    times.step(world);
+    speed = std::max(speed, fastest(world));
+  }
+  EXPECT_EQ(outside(world, 40, 20), 0);
+  EXPECT_LT(speed, 200);
+  for (int k = 0; k < 60; ++k) {
+    world.system.moveTo(left, {18 - 13 * k / 60.0, 8}, 0);
+    world.system.moveTo(right, {22 + 13 * k / 60.0, 8}, 0);
+    times.step(world);
+  }
+  world.seconds(5);
+  EXPECT_LT(fastest(world), 1);
+  EXPECT_LT(world.system.totals().overlap, 0.02);
+  EXPECT_LT(times.worst(), 60 * times.median() + 20);
+}
+
+TEST(RigidJam, AWedgedBodyStays) {
+  // Truth: a heavy block in a V of solids, and a light one pressed between it and the floor of the V, come to
+  // rest without sinking in.
+  RigidWorld world(closedBox(40, 40, 0, 0.5), {0, -kG});
+  for (const double side : {-1.0, 1.0}) {
+    BodyDef plank = solidAt(solidShape(BoxShape{{10, 0.5}}), {20 + side * 3, 6}, side * 1.1);
+    plank.friction = 0.5;
+    world.add(plank);
+  }
+  Dice dice(4);
+  for (int k = 0; k < 12; ++k)
+    world.add(rough(randomPolygon(dice, k % 3 == 0), {20 + dice.between(-0.5, 0.5), 5 + 1.4 * k}));
+  const int heavy = world.add(rough(kBox, {20, 24}, 500));
+  world.seconds(8);
+  const double y = world.at(heavy).y;
+  world.seconds(2);
+  EXPECT_NEAR(world.at(heavy).y, y, 5e-3);
+  EXPECT_LT(world.system.totals().overlap, 0.02);
+  EXPECT_LT(fastest(world), 0.1);
+}
+
+}  // namespace
+}  // namespace smokebox::test
