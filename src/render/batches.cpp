@@ -51,6 +51,31 @@ void SpriteBatch::add(const Mask& mask, const LinearColor& under, const LinearCo
   }
 }
 
+bool SpriteBatch::unseen(Vec2 low, Vec2 high, double margin) const {
+  // Written so that a place that is no number is unseen.
+  return !(high.x > -margin && high.y > -margin && low.x < pictureWidth_ + margin &&
+           low.y < pictureHeight_ + margin);
+}
+
+void SpriteBatch::addDisk(Vec2 centre, double radius, const LinearColor& fill, double stroke,
+                          const LinearColor& outline) {
+  if (unseen(centre, centre, radius + 1)) return;
+  records_.insert(records_.end(), {float(centre.x), float(centre.y), float(radius), float(stroke), -1, 0});
+  records_.insert(records_.end(), fill.begin(), fill.end());
+  records_.insert(records_.end(), outline.begin(), outline.end());
+}
+
+void SpriteBatch::addSegment(Vec2 from, Vec2 to, double width, const LinearColor& color,
+                             const LinearColor& halo) {
+  if (unseen({std::min(from.x, to.x), std::min(from.y, to.y)},
+             {std::max(from.x, to.x), std::max(from.y, to.y)}, width + 3))
+    return;
+  records_.insert(records_.end(),
+                  {float(from.x), float(from.y), float(to.x), float(to.y), -2, float(0.5 * width)});
+  records_.insert(records_.end(), halo.begin(), halo.end());
+  records_.insert(records_.end(), color.begin(), color.end());
+}
+
 void SpriteBatch::copyIn(const Mask& mask, int fromRow, int rows) {
   const std::size_t needed = std::size_t(2) * atlasWidth_ * (shelfY_ + std::max(shelfHeight_, rows));
   if (texels_.size() < needed) texels_.resize(needed);
@@ -64,7 +89,8 @@ void SpriteBatch::flush() {
   if (!records_.empty()) {
     atlas_.bind(0);
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    atlas_.upload(atlasWidth_, shelfY_ + shelfHeight_, texels_.data());
+    const int rows = shelfY_ + shelfHeight_;
+    if (rows > 0) atlas_.upload(atlasWidth_, rows, texels_.data());
     program_.use();
     program_.set("masks", 0);
     program_.set("pictureSize", float(pictureWidth_), float(pictureHeight_));

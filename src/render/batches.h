@@ -1,5 +1,6 @@
-// Many small quads in one draw call: sprites (masks with two colours, gathered in one atlas texture) and
-// panels (rectangles with rounded corners). Colours are premultiplied and in linear light.
+// Many small quads in one draw call: sprites (masks with two colours, gathered in one atlas texture; disks
+// and segments, which need no mask) and panels (rectangles with rounded corners). Colours are premultiplied
+// and in linear light.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,15 +24,21 @@ class SpriteBatch {
   SpriteBatch(const Gl& gl, int pictureWidth, int pictureHeight);
   /// Drawn by flush(), later ones over earlier ones; flushes by itself when the atlas is full.
   void add(const Mask& mask, const LinearColor& under, const LinearColor& over);
+  /// Its outline, `stroke` pixels wide, lies inside of the radius; without a stroke it is all of one colour.
+  void addDisk(Vec2 centre, double radius, const LinearColor& fill, double stroke = 0,
+               const LinearColor& outline = {});
+  /// With round ends, and a thin halo of another colour.
+  void addSegment(Vec2 from, Vec2 to, double width, const LinearColor& color, const LinearColor& halo = {});
   void flush();
 
  private:
+  bool unseen(Vec2 low, Vec2 high, double margin) const;
   void copyIn(const Mask& mask, int fromRow, int rows);
 
   const Gl& gl_;
   int pictureWidth_, pictureHeight_;
   GlProgram program_;
-  GlTexture atlas_;
+  GlTexture atlas_;  // of masks; empty until there is one
   GlInstances instances_;
   std::vector<float> records_;
   std::vector<std::uint8_t> texels_;  // of the atlas, two bytes each

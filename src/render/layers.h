@@ -12,6 +12,7 @@
 #include "render/mask.h"
 #include "render/picture_frame.h"
 #include "render/smooth_field.h"
+#include "render/strokes.h"
 #include "world/snapshot.h"
 
 namespace smokebox {
@@ -22,6 +23,7 @@ struct Palette {
   int width, height;  // of the picture, pixels
   SpriteBatch sprites;
   PanelBatch panels;
+  StrokeBatch strokes;
   TextPainter text;
 
   Palette(const Gl& functions, int pictureWidth, int pictureHeight)
@@ -29,7 +31,8 @@ struct Palette {
         width(pictureWidth),
         height(pictureHeight),
         sprites(functions, pictureWidth, pictureHeight),
-        panels(functions, pictureWidth, pictureHeight) {}
+        panels(functions, pictureWidth, pictureHeight),
+        strokes(functions, pictureWidth, pictureHeight) {}
 };
 
 /// Smoke of any number of colours.

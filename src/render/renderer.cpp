@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "render/body_layers.h"
 #include "render/gl_context.h"
 #include "render/layers.h"
 #include "render/picture_frame.h"
@@ -22,6 +23,13 @@ struct Renderer::Impl {
   ColorBarLayer colorBars;
   TextLayer text;
   ProbesLayer probes;
+  BodiesLayer bodies;
+  ParticlesLayer particles;
+  SpringsLayer springs;
+  JointsLayer joints;
+  ClothLayer cloth;
+  TrailsLayer trails;
+  CollisionsLayer collisions;
 
   Impl(int w, int h, GlBackend backend)
       : context(backend),
@@ -35,7 +43,14 @@ struct Renderer::Impl {
         arrows(context.gl()),
         colorBars(palette),
         text(palette),
-        probes(palette) {}
+        probes(palette),
+        bodies(palette),
+        particles(palette),
+        springs(palette),
+        joints(palette),
+        cloth(palette),
+        trails(palette),
+        collisions(palette) {}
 
   void drawDomain(const Snapshot& snapshot, const PictureFrame& frame);
   void drawInDomain(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame,
@@ -88,8 +103,8 @@ void Renderer::draw(const Snapshot& snapshot, Image& image) {
   if (error != GL_NO_ERROR) throw GlError("drawing failed, OpenGL's error " + std::to_string(error));
 }
 
-/// In the order of the list, but that nothing which fills the fluid is painted over a solid: inside of one
-/// there is none, and its values there are only continued for the sake of smooth edges.
+/// In the order of the list, but that nothing which fills the fluid is painted over a solid or a body: inside
+/// of one there is none, and its values there are only continued for the sake of smooth edges.
 void Renderer::Impl::drawDomain(const Snapshot& snapshot, const PictureFrame& frame) {
   const std::vector<LayerSpec>& layers = snapshot.view.layers;
   const auto fillsFluid = [](const LayerSpec& l) { return l.kind == LayerKind::smoke || isField(l.kind); };
@@ -97,7 +112,8 @@ void Renderer::Impl::drawDomain(const Snapshot& snapshot, const PictureFrame& fr
   std::vector<const LayerSpec*> order, late;
   for (auto layer = layers.begin(); layer != layers.end(); ++layer) {
     if (layer == lastFluid) order.insert(order.end(), late.begin(), late.end());
-    (layer->kind == LayerKind::solids && layer < lastFluid ? late : order).push_back(&*layer);
+    const bool partsFluid = layer->kind == LayerKind::solids || layer->kind == LayerKind::bodies;
+    (partsFluid && layer < lastFluid ? late : order).push_back(&*layer);
   }
   if (lastFluid == layers.end()) order.insert(order.end(), late.begin(), late.end());
   const bool filled = !order.empty() && fillsPicture(snapshot, *order.front());
@@ -132,12 +148,25 @@ void Renderer::Impl::drawInDomain(const Snapshot& snapshot, const LayerSpec& lay
       probes.draw(snapshot, layer, frame);
       break;
     case LayerKind::bodies:
+      bodies.draw(snapshot, layer, frame);
+      break;
     case LayerKind::particles:
+      particles.draw(snapshot, layer, frame);
+      break;
     case LayerKind::springs:
+      springs.draw(snapshot, layer, frame);
+      break;
     case LayerKind::joints:
+      joints.draw(snapshot, layer, frame);
+      break;
     case LayerKind::cloth:
+      cloth.draw(snapshot, layer, frame);
+      break;
     case LayerKind::trails:
+      trails.draw(snapshot, layer, frame);
+      break;
     case LayerKind::collisions:
+      collisions.draw(snapshot, layer, frame);
       break;
     case LayerKind::caption:
     case LayerKind::time:

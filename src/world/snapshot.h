@@ -113,6 +113,7 @@ struct Snapshot {
   std::vector<JointPicture> joints;
   std::vector<ClothPicture> cloths;
   std::vector<TouchPicture> touches;
+  double usualImpulse = 1;  // N s: of a blow that is drawn at a middling size
   std::vector<TrailPicture> trails;
   std::optional<Vec2> followed;  // where the body is that the camera follows
   std::vector<ProbePicture> probes;

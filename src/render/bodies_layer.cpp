@@ -1,0 +1,84 @@
+#include <algorithm>
+
+#include "base/maths.h"
+#include "render/body_layers.h"
+#include "render/link_shapes.h"
+
+namespace smokebox {
+
+namespace {
+constexpr double kOutlineUnits = 1.8;        // width of the outline, in 1/720 of the picture's height
+constexpr double kThinnestUnits = 1.6;       // thinner bodies are widened to this
+constexpr double kOutlineShare = 0.14;       // of a small body's radius: its outline does not swallow it
+constexpr double kMarkFromPixels = 5;        // smaller bodies have no mark
+constexpr double kDark = 0.5, kLight = 0.5;  // shares of black in outlines on dark and light ground
+
+struct BodyColors {
+  Color fill, outline;
+};
+
+BodyColors colorsOf(const BodyPicture& body, const LayerSpec& layer, bool darkGround) {
+  const Color fill = body.color ? *body.color : layer.color.value_or(bodyColor(body.index));
+  return {fill, mixed(fill, {0, 0, 0}, darkGround ? kDark : kLight)};
+}
+
+double strokeFor(double radius, const PictureFrame& frame) {
+  return std::min(frame.line(kOutlineUnits), std::max(kOutlineShare * radius, 0.6));
+}
+}  // namespace
+
+BodiesLayer::BodiesLayer(Palette& palette) : palette_(palette), painter_(palette.width, palette.height) {}
+
+void BodiesLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
+  if (kept_.size() < snapshot.bodies.size()) kept_.resize(snapshot.bodies.size());
+  for (std::size_t k = 0; k < snapshot.bodies.size(); ++k) {
+    const BodyPicture& body = snapshot.bodies[k];
+    if (body.radius > 0)
+      drawDisk(body, layer, frame);
+    else
+      drawOutlines(body, k, layer, frame);
+  }
+  palette_.sprites.flush();
+}
+
+/// Its mark is a spoke.
+void BodiesLayer::drawDisk(const BodyPicture& body, const LayerSpec& layer, const PictureFrame& frame) {
+  const BodyColors colors = colorsOf(body, layer, frame.darkGround);
+  const LinearColor outline = linear(colors.outline, layer.opacity);
+  const Vec2 centre = frame.toPixels(body.pose.position);
+  const double radius = std::max(body.radius * frame.scale, 0.5 * kThinnestUnits * frame.unit);
+  const double stroke = strokeFor(radius, frame);
+  palette_.sprites.addDisk(centre, radius, linear(colors.fill, layer.opacity), stroke, outline);
+  if (!layer.mark || radius < kMarkFromPixels) return;
+  const Vec2 rim = frame.toPixels(transformed(Vec2{body.radius, 0}, body.pose)) - centre;
+  palette_.sprites.addSegment(centre, centre + (1 - stroke / radius) * rim, stroke, outline);
+}
+
+/// Its mark is a dot on the way from the centre of mass to the first corner, where that is inside.
+void BodiesLayer::drawOutlines(const BodyPicture& body, std::size_t place, const LayerSpec& layer,
+                               const PictureFrame& frame) {
+  pixels_.resize(body.outlines.size());
+  for (std::size_t m = 0; m < pixels_.size(); ++m) {
+    pixels_[m].clear();
+    for (const Vec2& point : body.outlines[m]) pixels_[m].push_back(frame.toPixels(point));
+  }
+  if (pixels_.empty() || pixels_[0].empty()) return;
+  const BodyColors colors = colorsOf(body, layer, frame.darkGround);
+  const LinearColor outline = linear(colors.outline, layer.opacity);
+  const Vec2 centre = frame.toPixels(body.pose.position), corner = pixels_[0][0];
+  const double radius = length(corner - centre);
+  Kept& kept = kept_[place];
+  if (kept.outlines != pixels_) {
+    kept.mask = painter_.solid(pixels_, strokeFor(radius, frame), std::max(1.2, kThinnestUnits * frame.unit));
+    std::swap(kept.outlines, pixels_);
+  }
+  palette_.sprites.add(kept.mask, linear(colors.fill, layer.opacity), outline);
+  constexpr double kOut = 0.55;
+  if (!layer.mark || radius < kMarkFromPixels) return;
+  const Vec2 at = body.pose.position + kOut * (body.outlines[0][0] - body.pose.position);
+  if (!contains(body.outlines, at)) return;
+  palette_.sprites.addDisk(centre + kOut * (corner - centre),
+                           std::clamp(0.09 * radius, 1.0, 3.2 * std::max(frame.unit, 0.5)), outline);
+}
+
+}  // namespace smokebox

@@ -1,0 +1,33 @@
+// The forms in which springs, ropes and motors are drawn, and the colours of what has none of its own.
+#pragma once
+#include <vector>
+
+#include "base/color.h"
+#include "geometry/vec2.h"
+
+namespace smokebox {
+
+/// The colour of the k-th body (particle, cloth) that names none.
+Color bodyColor(int index);
+
+/// Of a spring that is stretched by a share of its length at rest (negative: pressed): blue, then `neutral`
+/// at rest, then red, as far for a stretch as for the same pressure.
+Color strainColor(double strain, const Color& neutral);
+
+/// A spring's zigzag, in pixels. The wire keeps its length: coils flatten as the spring stretches.
+struct Zigzag {
+  double straight = 0;   // at each end
+  double period = 0;     // of a coil; 0: too small for coils, a straight line
+  double amplitude = 0;  // to each side
+};
+/// `rest` and `length`: of the spring at rest and now; `unit`: of the picture's line widths.
+Zigzag zigzag(double rest, double length, double unit);
+
+/// A rope of `length` from a to b that hangs towards `down` (of length 1): a catenary, or a straight line
+/// where it is taut. Points lie evenly along it.
+std::vector<Vec2> hangingRope(Vec2 a, Vec2 b, double length, Vec2 down);
+
+/// From `fromRad` to `toRad`, x right and y down.
+std::vector<Vec2> arc(Vec2 centre, double radius, double fromRad, double toRad);
+
+}  // namespace smokebox
