@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "base/maths.h"
 #include "render/body_layers.h"
@@ -70,15 +71,29 @@ void BodiesLayer::drawOutlines(const BodyPicture& body, std::size_t place, const
   Kept& kept = kept_[place];
   if (kept.outlines != pixels_) {
     kept.mask = painter_.solid(pixels_, strokeFor(radius, frame), std::max(1.2, kThinnestUnits * frame.unit));
-    std::swap(kept.outlines, pixels_);
+    kept.outlines = pixels_;
   }
   palette_.sprites.add(kept.mask, linear(colors.fill, layer.opacity), outline);
   constexpr double kOut = 0.55;
   if (!layer.mark || radius < kMarkFromPixels) return;
   const Vec2 at = body.pose.position + kOut * (body.outlines[0][0] - body.pose.position);
-  if (!contains(body.outlines, at)) return;
-  palette_.sprites.addDisk(centre + kOut * (corner - centre),
-                           std::clamp(0.09 * radius, 1.0, 3.2 * std::max(frame.unit, 0.5)), outline);
+  const double size = std::clamp(0.09 * radius, 1.0, 3.2 * std::max(frame.unit, 0.5));
+  if (contains(body.outlines, at) && roomAt(centre + kOut * (corner - centre)) > 1.5 * size)
+    palette_.sprites.addDisk(centre + kOut * (corner - centre), size, outline);
+}
+
+/// Distance to the nearest edge, in pixels.
+double BodiesLayer::roomAt(Vec2 pixel) const {
+  double nearest2 = 1e30;
+  for (const Outline& outline : pixels_)
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const Vec2 a = outline[k], along = outline[(k + 1) % outline.size()] - a;
+      const double size2 = dot(along, along);
+      const double share = size2 > 0 ? std::clamp(dot(pixel - a, along) / size2, 0.0, 1.0) : 0.0;
+      const Vec2 off = pixel - a - share * along;
+      nearest2 = std::min(nearest2, dot(off, off));
+    }
+  return std::sqrt(nearest2);
 }
 
 }  // namespace smokebox

@@ -18,6 +18,7 @@ class BodiesLayer {
   void drawDisk(const BodyPicture& body, const LayerSpec& layer, const PictureFrame& frame);
   void drawOutlines(const BodyPicture& body, std::size_t place, const LayerSpec& layer,
                     const PictureFrame& frame);
+  double roomAt(Vec2 pixel) const;
 
   struct Kept {
     PixelOutlines outlines;

@@ -51,14 +51,15 @@ void JointsLayer::addPin(const JointPicture& joint, const Ink& ink, const Pictur
   const Vec2 at = frame.toPixels(joint.a);
   const double radius = std::max(2.5, kPinUnits * frame.unit), width = frame.line(kLineUnits);
   palette_.sprites.addDisk(at, radius, ink.ground, width, ink.line);
-  if (!joint.motor) return;
+  if (joint.motor == 0) return;
   const double reach = std::max(7.0, kMotorUnits * frame.unit),
                arrow = std::max(3.0, kArrowUnits * frame.unit);
-  const std::vector<Vec2> line = arc(at, reach, kArcFrom, kArcTo);
+  const double way = joint.motor > 0 ? 1 : -1;
+  const std::vector<Vec2> line = arc(at, reach, way * kArcFrom, way * kArcTo);
   palette_.strokes.add(line, {width + 2 * frame.unit, ink.halo});
   palette_.strokes.add(line, {width, ink.line});
   const Vec2 tip = line.back();
-  const Vec2 forward = Vec2{std::sin(kArcTo), -std::cos(kArcTo)};  // along the arc, towards smaller angles
+  const Vec2 forward{std::sin(kArcTo), -way * std::cos(kArcTo)};  // along the arc
   for (const double side : {1.0, -1.0})
     palette_.strokes.add({tip - arrow * (0.8 * forward + side * 0.55 * perpendicular(forward)), tip},
                          {width, ink.line});
@@ -92,10 +93,10 @@ void JointsLayer::addSlide(const JointPicture& joint, const Ink& ink, const Pict
   const Vec2 slider = start + now * forward;
   palette_.sprites.addSegment(slider - bar * forward, slider + bar * forward, 3.6 * width, ink.line,
                               ink.halo);
-  if (!joint.motor) return;
-  const Vec2 tail = slider + (bar + 6 * unit) * forward, tip = tail + 10 * unit * forward;
-  palette_.sprites.addSegment(tip, tip - 5 * unit * forward + 4 * unit * across, width, ink.line);
-  palette_.sprites.addSegment(tip, tip - 5 * unit * forward - 4 * unit * across, width, ink.line);
+  if (joint.motor == 0) return;
+  const Vec2 ahead = joint.motor > 0 ? forward : -forward, tip = slider + (bar + 12 * unit) * ahead;
+  palette_.sprites.addSegment(tip, tip - 5 * unit * ahead + 4 * unit * across, width, ink.line);
+  palette_.sprites.addSegment(tip, tip - 5 * unit * ahead - 4 * unit * across, width, ink.line);
 }
 
 void JointsLayer::addRope(const JointPicture& joint, const Ink& ink, const PictureFrame& frame) {

@@ -1,5 +1,6 @@
 // How the system of bodies is built from a scene.
 #include <algorithm>
+#include <cmath>
 
 #include "world/needs.h"
 #include "world/rigid_stage.h"
@@ -58,6 +59,7 @@ RigidStage::RigidStage(const SceneSpec& spec, const SolidScripts& solids, double
     if (layer.kind == LayerKind::trails && canShow(spec, layer.kind))
       trailSeconds_ = std::max(trailSeconds_, layer.length);
   }
+  usualImpulse_ = findUsualImpulse(spec.gravity);
   trails_.resize(trailSeconds_ > 0 ? bodies_.size() : 0);
   if (inFluid_) placeInFluid(spec.time.step);
 }
@@ -103,6 +105,23 @@ std::shared_ptr<const BodyShape> RigidStage::shapeOf(const std::shared_ptr<const
 
 double RigidStage::massOf(const Body& body) const {
   return body.spec.mass ? *body.spec.mass : body.spec.density * body.shape->mass.area;
+}
+
+/// The middle one of the masses, at the speed of a fall through an eighth of the height, or at that of the
+/// fastest body at the start where nothing falls.
+double RigidStage::findUsualImpulse(Vec2 gravity) const {
+  std::vector<double> masses;
+  double fastest = 0;
+  for (const Body& body : bodies_) {
+    masses.push_back(massOf(body));
+    fastest = std::max(fastest, length(body.spec.velocity));
+  }
+  if (masses.empty()) return 1;
+  const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
+  std::nth_element(masses.begin(), middle, masses.end());
+  const double fall = 0.5 * std::sqrt(length(gravity) * walls_.height);
+  const double speed = fall > 0 ? fall : fastest;
+  return speed > 0 ? *middle * speed : *middle;
 }
 
 double RigidStage::inertiaOf(const Body& body) const {

@@ -114,11 +114,13 @@ void RigidStage::captureLinks(Snapshot& snapshot) const {
                                                        : Kind::rope;
     const double turn = joint.a.body < 0 ? 0 : system_.angleRad(joint.a.body);
     snapshot.joints.push_back({kind, system_.anchorPoint(joint.a), system_.anchorPoint(joint.b),
-                               transformed(joint.axis, Pose{{}, turn}), joint.length, joint.motorLimit > 0});
+                               transformed(joint.axis, Pose{{}, turn}), joint.length,
+                               joint.motorLimit > 0 ? joint.motorSpeed : 0});
   }
 }
 
 void RigidStage::captureTouches(double time, Snapshot& snapshot) const {
+  snapshot.usualImpulse = usualImpulse_;
   for (const KeptTouch& kept : impacts_)
     snapshot.touches.push_back(
         {kept.touch.point, kept.touch.normal, kept.touch.impulse, kept.touch.approach, time - kept.time});

@@ -84,6 +84,7 @@ class RigidStage {
   void addBody(Body& body);
   bool isThere(const Body& body) const { return body.id >= 0 && system_.isThere(body.id); }
   double massOf(const Body& body) const;
+  double findUsualImpulse(Vec2 gravity) const;
   double inertiaOf(const Body& body) const;
   /// `at` in the coordinates of the outline as it is given; the number is -1 for what is not there.
   std::optional<Anchor> anchorOf(const HoldSpec& hold) const;
@@ -134,6 +135,7 @@ class RigidStage {
   bool shapesMoved_ = true;
 
   double touchSeconds_ = 0, trailSeconds_ = 0;  // 0: no layer shows them
+  double usualImpulse_ = 1;
   std::deque<KeptTouch> impacts_;
   std::vector<std::deque<Vec2>> trails_;
 };

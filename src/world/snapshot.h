@@ -65,7 +65,7 @@ struct JointPicture {
   Vec2 a, b;          // the points that it joins, world coordinates
   Vec2 axis;          // of a slide, in the world now
   double length = 0;  // of a rope
-  bool motor = false;
+  double motor = 0;   // speed that it is driven at, rad/s (pin) or m/s (slide); 0: no motor
 };
 
 struct ClothPicture {

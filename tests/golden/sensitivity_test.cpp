@@ -145,6 +145,13 @@ std::optional<std::array<double, 2>> rangeOf(const FilmRanges& ranges, LayerKind
     case LayerKind::caption:
     case LayerKind::time:
     case LayerKind::probes:
+    case LayerKind::bodies:
+    case LayerKind::particles:
+    case LayerKind::springs:
+    case LayerKind::joints:
+    case LayerKind::cloth:
+    case LayerKind::trails:
+    case LayerKind::collisions:
       break;
   }
   return {};
@@ -187,6 +194,39 @@ TEST_P(Range, OffByTwoPercentIsSeen) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sensitivity, Range, testing::ValuesIn(rowsWith(hasField)), nameOfRow);
+
+// --- layers of bodies
+
+bool showsBodies(const LayerSpec& layer) {
+  return layer.shown && layer.kind >= LayerKind::bodies && layer.kind <= LayerKind::collisions;
+}
+
+bool hasBodies(const SceneSpec& spec) {
+  return std::any_of(spec.view.layers.begin(), spec.view.layers.end(), showsBodies);
+}
+
+class Layers : public testing::TestWithParam<Row> {};
+
+TEST_P(Layers, LeftOutIsSeen) {
+  // Truth: without any one of its layers of bodies, springs and the like, a picture is beyond the tolerance
+  // at one of the row's times at least; so it is without the marks of bodies.
+  const Row& row = GetParam();
+  const std::vector<Image> with = draw(row, {});
+  const auto expectSeen = [&](const std::string& setting) {
+    const std::vector<Image> without = draw(row, {}, {setting});
+    bool seen = false;
+    for (std::size_t k = 0; k < with.size(); ++k) seen |= unseen(with[k], without[k], row.tolerance).empty();
+    EXPECT_TRUE(seen) << row.name << " with " << setting;
+  };
+  for (const LayerSpec& layer : row.document().spec().view.layers) {
+    if (!showsBodies(layer)) continue;
+    const std::string path = std::string("view.layers.") + layerName(layer.kind);
+    expectSeen(path + ".opacity=0");
+    if (layer.kind == LayerKind::bodies) expectSeen(path + ".mark=false");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensitivity, Layers, testing::ValuesIn(rowsWith(hasBodies)), nameOfRow);
 
 }  // namespace
 }  // namespace smokebox::golden
