@@ -69,7 +69,7 @@ void JointsLayer::addWeld(const JointPicture& joint, const Ink& ink, const Pictu
   const Vec2 at = frame.toPixels(joint.a);
   const double half = std::max(2.5, kWeldUnits * frame.unit), width = frame.line(kLineUnits);
   const Vec2 right{half, 0}, down{0, half};
-  palette_.sprites.addSegment(at - right, at + right, 2 * half, ink.ground);
+  palette_.sprites.addDisk(at, half, ink.ground);
   const Vec2 corners[] = {at - right - down, at + right - down, at + right + down, at - right + down};
   for (int k = 0; k < 4; ++k) palette_.sprites.addSegment(corners[k], corners[(k + 1) % 4], width, ink.line);
   palette_.sprites.addSegment(corners[0], corners[2], width, ink.line);
