@@ -27,7 +27,7 @@ Box boxOf(const BodyShape& shape, const Frame& frame) {
   return {middle - reach, middle + reach};
 }
 
-bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt) {
+bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Vec2 later) {
   const BodyShape& shape = *bodies.def[body].shape;
   const Motion& v = bodies.velocity[body];
   const double turns = std::abs(v.turn) * dt;
@@ -43,6 +43,7 @@ bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt) {
             std::min(swung.high.y, std::max(circle.high.y, box.high.y))}};
   }
   const Vec2 way = dt * v.linear();
+  box = joined(box, shifted(box, later));
   box = joined(box, shifted(box, way));
   if (bodies.moves(body)) box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
   if (listed_[body] && fat_[body].holds(box)) return false;
@@ -128,11 +129,11 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
   pairs_.swap(merged_);
 }
 
-void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, Vec2 gravity, double dt,
-                        std::vector<PairKey>& found) {
+void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, const std::vector<Motion>& way,
+                        Vec2 gravity, double dt, std::vector<PairKey>& found) {
   found_.clear();
   bool any = false;
-  for (const int b : which) any |= (refitted_[b] = fit(bodies, b, gravity, dt));
+  for (const int b : which) any |= (refitted_[b] = fit(bodies, b, gravity, dt, way[b].linear()));
   if (any) {
     tree_.refit(fat_);
     for (const int b : which)

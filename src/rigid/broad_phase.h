@@ -32,10 +32,10 @@ class BroadPhase {
 
   /// Brings pairs() up to date for a step of `dt`.
   void update(const Bodies& bodies, Vec2 gravity, double dt);
-  /// Within a step: makes sure that the box of each body that is listed holds its way for another `dt`. Gives
-  /// pairs that are new; pairs() has them from the next update on.
-  void extend(const Bodies& bodies, const std::vector<int>& which, Vec2 gravity, double dt,
-              std::vector<PairKey>& found);
+  /// Within a step: makes sure that the box of each body that is listed holds its way for another `dt`, from
+  /// now or from the end of `way`. Gives pairs that are new; pairs() has them from the next update on.
+  void extend(const Bodies& bodies, const std::vector<int>& which, const std::vector<Motion>& way,
+              Vec2 gravity, double dt, std::vector<PairKey>& found);
 
   /// Whom it may meet has changed: they are searched for anew.
   void lookAgain(int body) {
@@ -46,7 +46,7 @@ class BroadPhase {
   Vec2 shiftOf(const PairKey& key) const { return {key.sx * walls_.width, key.sy * walls_.height}; }
 
  private:
-  bool fit(const Bodies& bodies, int body, Vec2 gravity, double dt);
+  bool fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Vec2 later = {});
   void search(const Bodies& bodies, int body, std::vector<PairKey>& found) const;
 
   RigidWalls walls_;

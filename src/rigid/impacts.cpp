@@ -11,6 +11,10 @@ namespace smokebox {
 namespace {
 // Points of one contact that close within this share of a sub-step of each other strike together.
 constexpr double kTogether = 0.02;
+// Impacts of one body within a sub-step, at most.
+constexpr int kMostTimes = 8;
+// After so many, the slowest approach that still bounces doubles with each one: a heap comes to rest soon.
+constexpr int kFreeTimes = 2;
 
 /// What displacements make of a point's gap.
 double gapOf(const std::vector<Motion>& way, const Contact& contact, const ContactPoint& point) {
@@ -49,6 +53,7 @@ void Impacts::schedule(const Bodies& bodies, const std::vector<Motion>& way,
                        const std::vector<Contact*>& contacts, int k, double h, double least) {
   const Contact& contact = *contacts[k];
   const double now = std::max(struckAt_[contact.a], struckAt_[contact.b]);
+  least = leastOf(contact, least);
   ++stamps_[k];
   double first = h;
   bool any = false;
@@ -127,7 +132,7 @@ bool Impacts::meet(const Bodies& bodies, const std::vector<Motion>& way, Contact
   return true;
 }
 
-void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
+bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
                      std::vector<Motion>& way) {
   const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
   if (!meet(bodies, way, contact, h, now)) {
@@ -137,7 +142,7 @@ void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
       const double closing = std::max(-partingSpeed(bodies, contact, p), 0.0);
       p.gap = 2 * h * closing - gapMoved(bodies, contact, p);
     }
-    return;
+    return false;
   }
   const Vec2 n = contact.normal, tangent = perpendicular(n);
   const double late = dot(acceleration(bodies, contact), n) * (now - 0.5 * h);
@@ -168,7 +173,10 @@ void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
     }
     setMasses(bodies, contact);
   };
-  if (count == 0) return settle();
+  if (count == 0) {
+    settle();
+    return false;
+  }
 
   auto response = [&](const ContactPoint& p, Vec2 d, const ContactPoint& q, Vec2 e) {
     return dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
@@ -215,9 +223,18 @@ void Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   }
   contact.struck = true;
   settle();
+  return true;
 }
 
-void Impacts::begin(int bodies) { struckAt_.assign(bodies, 0); }
+double Impacts::leastOf(const Contact& contact, double least) const {
+  const int times = std::max(times_[contact.a], times_[contact.b]);
+  return times <= kFreeTimes ? least : least * static_cast<double>(1 << (times - kFreeTimes));
+}
+
+void Impacts::begin(int bodies) {
+  struckAt_.assign(bodies, 0);
+  times_.assign(bodies, 0);
+}
 
 void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
                   std::vector<Motion>& way) {
@@ -238,17 +255,22 @@ void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double 
     nextB_[k] = firstAt_[contacts[k]->b];
     firstAt_[contacts[k]->b] = 2 * k + 1;
   }
-  const long most = 64 + 16L * n;
-  while (!heap_.empty() && count_ < most) {
+  while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Event event = heap_.back();
     heap_.pop_back();
     if (stamps_[event.contact] != event.stamp) continue;
     Contact& contact = *contacts[event.contact];
     double now = event.time;
-    strike(bodies, contact, h, least, now, way);
+    ++stamps_[event.contact];
+    // A body that is struck over and over is squeezed: the contact solver ends that.
+    if (times_[contact.a] >= kMostTimes || times_[contact.b] >= kMostTimes) continue;
+    if (!strike(bodies, contact, h, leastOf(contact, least), now, way)) continue;
     for (const int body : {contact.a, contact.b})
-      if (bodies.moves(body)) struckAt_[body] = std::max(struckAt_[body], now);
+      if (bodies.moves(body)) {
+        struckAt_[body] = std::max(struckAt_[body], now);
+        ++times_[body];
+      }
     ++count_;
     for (const int body : {contact.a, contact.b}) {
       if (!bodies.moves(body)) continue;

@@ -5,8 +5,8 @@
 // gravity along the normal, the gap is g + (v - a h/2) t + a t^2/2 and the speed of approach at its root t is
 // w = v + a (t - h/2). The impulse changes v by -(1 + e) w, and the body's way by -t times the change of its
 // velocity: so flight, bounce and flight again are exact, whenever within the sub-step the bounce falls.
-// Impulses go on (body to body to body: a cradle) until nothing approaches, up to a bound; each one takes
-// energy or keeps it, so that however many there are, none is added.
+// Impulses go on (body to body to body: a cradle) until nothing approaches, up to a number for each body;
+// each one takes energy or keeps it, so that however many there are, none is added.
 #pragma once
 #include <vector>
 
@@ -38,12 +38,14 @@ class Impacts {
   struct Approach {
     double time = 0, speed = 0;  // of the point: when it closes, how fast; speed >= 0: it does not
   };
+  double leastOf(const Contact& contact, double least) const;
   Approach approach(const Bodies& bodies, const std::vector<Motion>& way, const Contact& contact,
                     const ContactPoint& point, double h, double now) const;
   void schedule(const Bodies& bodies, const std::vector<Motion>& way, const std::vector<Contact*>& contacts,
                 int k, double h, double least);
   /// `now`: what was expected comes in, the moment of the impact itself goes out.
-  void strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
+  /// False: nothing happened.
+  bool strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
               std::vector<Motion>& way);
   Frame frameAt(const Bodies& bodies, const std::vector<Motion>& way, int body, double h, double time) const;
   /// Finds the moment at which the two pieces really meet, near `now`, and their contact then; false: they do
@@ -57,6 +59,7 @@ class Impacts {
   Vec2 gravity_;
   long count_ = 0;
   std::vector<double> struckAt_;
+  std::vector<int> times_;  // by body: impacts within the sub-step
   std::vector<Event> heap_;
   std::vector<int> stamps_;
   std::vector<int> firstAt_, nextA_, nextB_;  // lists of contacts at each body

@@ -25,6 +25,9 @@ constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 constexpr double kAhead = 4;
 // Beyond this share of the thinner one's width in a sub-step, a pair is swept.
 constexpr double kSwept = 0.25;
+// What overlaps by more than this share of the thinner one's width, and goes on closing in faster than that
+// (m/s) against all impulses, is crushed.
+constexpr double kCrushed = 0.03, kCrushSpeed = 0.2;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
@@ -56,18 +59,31 @@ double safeShare(const ConvexPiece& a, const Sweep& sa, const ConvexPiece& b, co
     if (!hit) return 1;
     share = *hit;
   }
-  Manifold manifold;
-  for (int round = 0; round < kRounds; ++round) {
-    double gap = deep;
-    if (collide(a, frameAt(sa, share), b, frameAt(sb, share), deep, manifold)) {
-      gap = manifold.points[0].gap;
-      if (manifold.count == 2) gap = std::min(gap, manifold.points[1].gap);
+  auto gapAt = [&](double at) {
+    Manifold manifold;
+    if (!collide(a, frameAt(sa, at), b, frameAt(sb, at), deep, manifold)) return deep;
+    const double gap = manifold.points[0].gap;
+    return manifold.count == 2 ? std::min(gap, manifold.points[1].gap) : gap;
+  };
+  if (share == 0) {  // what overlaps already may at least part
+    const double before = gapAt(0), soon = std::min(deep / most, 1.0);
+    if (before < -0.8 * deep) {
+      if (gapAt(soon) < before) return 0;
+      share = soon;
     }
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    const double gap = gapAt(share);
     if (gap < -0.8 * deep) return share;
     share += (gap + deep) / most;
     if (share >= 1) return 1;
   }
   return share;
+}
+
+bool isMoving(const Bodies& bodies, int body) {
+  const Motion& v = bodies.velocity[body];
+  return v.x != 0 || v.y != 0 || v.turn != 0;
 }
 
 /// Distance of the point from the box around a body's pieces.
@@ -216,7 +232,10 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const double way = relativeSpeed(bodies, a, b) * dt;
     const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
     const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
-    if (way > (bounces ? kCalmBouncing : kCalm) * thin || (way > kCalmTurning * thin && turn > kCalmTurn)) {
+    const bool pushed =
+        (!bodies.moves(a) && isMoving(bodies, a)) || (!bodies.moves(b) && isMoving(bodies, b));
+    if ((pushed && way > kReuse * thin) || way > (bounces ? kCalmBouncing : kCalm) * thin ||
+        (way > kCalmTurning * thin && turn > kCalmTurn)) {
       livelyPair_[k] = 1;
       makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
       continue;
@@ -335,19 +354,30 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
 bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
                        ContactBlocks& blocks, double timeLeft) {
   leaving_.clear();
+  turned_.clear();
   const double t = elapsed_ + h_;
   for (int b = 0; b < bodies.count(); ++b) {
-    if (stirred_[b] || !bodies.moves(b) || !bodies.there[b]) continue;
-    const Expected& e = expected_[b];
+    if (!bodies.moves(b) || !bodies.there[b]) continue;
+    Expected& e = expected_[b];
+    if (stirred_[b]) {  // its pairs are lively, but does its box still hold its way?
+      const Motion& v = bodies.velocity[b];
+      const Vec2 changed = v.linear() - e.velocity.linear();
+      const double slack = 0.5 * e.room / timeLeft;
+      if (dot(changed, changed) <= slack * slack) continue;
+      e.velocity = v;
+      turned_.push_back(b);
+      continue;
+    }
     const Motion &m = bodies.moved[b], &w = way[b];
     const Vec2 off = m.linear() + w.linear() - t * e.velocity.linear();
     const double turned = m.turn + w.turn - t * e.velocity.turn;
     const double left = e.room - std::abs(turned) * measures_[b].turningReach;
     if (left >= 0 && dot(off, off) <= left * left) continue;
     stirred_[b] = 1;
+    e.velocity = bodies.velocity[b];
     leaving_.push_back(b);
   }
-  if (leaving_.empty()) return false;
+  if (leaving_.empty() && turned_.empty()) return false;
   bool any = false;
   const auto& pairs = broad.pairs();
   if (!pairsListed_) listPairs(bodies, pairs);
@@ -365,7 +395,8 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
       makeLively(pairs[k].key, k, calm_.data() + first, count);
     }
   late_.clear();
-  broad.extend(bodies, leaving_, gravity, timeLeft, late_);
+  leaving_.insert(leaving_.end(), turned_.begin(), turned_.end());
+  broad.extend(bodies, leaving_, way, gravity, timeLeft, late_);
   for (const PairKey& key : late_) {
     makeLively(key, -1, nullptr, 0);
     any = true;
@@ -373,8 +404,66 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
   return any;
 }
 
+void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {
+  crushed_.clear();
+  auto isCrushed = [&](const Contact& c) {
+    const double deep = kCrushed * thinner(c.a, c.b);
+    for (int k = 0; k < c.count; ++k) {
+      const ContactPoint& p = c.points[k];
+      if (p.impulseN > 0 && p.gap + gapMoved(bodies, c, p) < -deep &&
+          partingSpeed(bodies, c, p) < -kCrushSpeed)
+        return true;
+    }
+    return false;
+  };
+  for (const Contact& c : lively_)
+    if (isCrushed(c)) {
+      if (bodies.moves(c.a)) crushed_.push_back(c.a);
+      if (bodies.moves(c.b)) crushed_.push_back(c.b);
+    }
+  if (crushed_.empty()) return;
+  std::sort(crushed_.begin(), crushed_.end());
+  crushed_.erase(std::unique(crushed_.begin(), crushed_.end()), crushed_.end());
+  auto speed = [&](int body) {
+    const Motion& v = before[body];
+    return length(v.linear()) + std::abs(v.turn) * measures_[body].turningReach;
+  };
+  // Nothing that gives way can make it faster than the fastest of those around it.
+  crushSpeed_.resize(crushed_.size());
+  for (std::size_t k = 0; k < crushed_.size(); ++k) crushSpeed_[k] = speed(crushed_[k]);
+  auto place = [&](int body) {
+    const auto at = std::lower_bound(crushed_.begin(), crushed_.end(), body);
+    return at != crushed_.end() && *at == body ? static_cast<int>(at - crushed_.begin()) : -1;
+  };
+  for (Contact& c : lively_) {
+    const int a = place(c.a), b = place(c.b);
+    if (a >= 0) crushSpeed_[a] = std::max(crushSpeed_[a], speed(c.b));
+    if (b >= 0) crushSpeed_[b] = std::max(crushSpeed_[b], speed(c.a));
+    if (a >= 0 || b >= 0)
+      for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;
+  }
+  for (std::size_t k = 0; k < crushed_.size(); ++k) {
+    Motion& v = bodies.velocity[crushed_[k]];
+    const double linear = length(v.linear()),
+                 turning = std::abs(v.turn) * measures_[crushed_[k]].turningReach;
+    if (linear > crushSpeed_[k]) {
+      v.x *= crushSpeed_[k] / linear;
+      v.y *= crushSpeed_[k] / linear;
+    }
+    if (turning > crushSpeed_[k]) v.turn *= crushSpeed_[k] / turning;
+  }
+}
+
 void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, double h,
                               const std::vector<double>* since, std::vector<Motion>& way) {
+  constexpr int kRounds = 4;  // what one pair stops, another may meet
+  for (int round = 0; round < kRounds; ++round)
+    if (!stopOnce(bodies, broad, h, since, way)) return;
+}
+
+bool NarrowPhase::stopOnce(const Bodies& bodies, const BroadPhase& broad, double h,
+                           const std::vector<double>* since, std::vector<Motion>& way) {
+  bool any = false;
   for (const LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
     const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
@@ -406,7 +495,9 @@ void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, dou
     const double share = past + (1 - past) * first;
     for (const int body : {a, b})
       if (bodies.moves(body)) way[body] = part(body, share);
+    any = true;
   }
+  return any;
 }
 
 void NarrowPhase::endStep(const Bodies& bodies, BroadPhase& broad) {

@@ -32,6 +32,10 @@ class NarrowPhase {
   /// Pairs that would pass through each other by moving `way`: both are stopped where they meet.
   void stopPassing(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
                    std::vector<Motion>& way);
+  /// Bodies between others that close in whatever pushes back (a press): no impulses can part them all. These
+  /// are not carried on, or they would grow without bound, and make none faster than the fastest around it
+  /// was `before`.
+  void yieldCrushed(Bodies& bodies, const std::vector<Motion>& before);
   /// A sub-step has passed.
   void advance() { elapsed_ += h_; }
   /// Remembers the contacts and their impulses for the next step.
@@ -75,6 +79,8 @@ class NarrowPhase {
   };
   void find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
             const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
+  bool stopOnce(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
+                std::vector<Motion>& way);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
 
@@ -91,7 +97,8 @@ class NarrowPhase {
   bool pairsListed_ = false;
   std::vector<PiecePair> pieces_;
   std::vector<PairKey> late_;
-  std::vector<int> leaving_;
+  std::vector<int> leaving_, turned_, crushed_;
+  std::vector<double> crushSpeed_;  // by crushed body
   double elapsed_ = 0, h_ = 0;
 };
 

@@ -31,6 +31,7 @@ struct RigidSystem::State {
   void findCalmShare();
   void findWays(double h, bool withStruck);
   void impacts(double h);
+  void keepInside();
   void warmStartAll(double h);
   void collectTouches(const std::vector<Contact>& contacts);
   void wrap(int body);

@@ -146,7 +146,7 @@ void RigidSystem::State::bounce(double h) {
 void RigidSystem::State::impacts(double h) {
   const double least = kRestingSubSteps * h * length(gravity) + 1e-7;
   impact.begin(bodies.count());
-  constexpr int kRounds = 8;  // a body that is struck may meet others of which nothing was known yet
+  constexpr int kRounds = 6;  // a body that is struck may meet others of which nothing was known yet
   for (int round = 0; round < kRounds; ++round) {
     bouncers.clear();
     for (const int k : bouncing)
@@ -232,7 +232,8 @@ void RigidSystem::State::solveContacts(double h) {
   for (int round = 0; round < 3; ++round) {
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       const double change = sweep(h, round == 0 && sweeps == 1);
-      if (sweeps == 1) settled = std::max(settled, kSettledShare * (change - h * length(gravity)));
+      if (sweeps == 1)
+        settled = std::max(settled, std::min(kSettledShare, 1e-6 * points) * (change - h * length(gravity)));
       if (change <= settled) break;
       if ((sweeps + 1) * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
     }
@@ -243,6 +244,8 @@ void RigidSystem::State::solveContacts(double h) {
       if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
     narrow.refresh(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
   }
+  narrow.yieldCrushed(bodies, start);
+  findWays(h, false);
   findCalmShare();
 }
 
@@ -258,9 +261,32 @@ void RigidSystem::State::move(double h) {
   blocks.separate(bodies, 0.5 * h * h * length(gravity), kSeparateShare, most);
   separate(bodies, spare, kSeparateShare, most);
   separate(bodies, narrow.lively(), kSeparateShare, most);
+  keepInside();
   collectTouches(narrow.lively());
   narrow.advance();
   timeLeft -= h;
+}
+
+// Whatever presses, no centre of mass goes through a closed side of the domain.
+void RigidSystem::State::keepInside() {
+  const auto closed = RigidWalls::Kind::closed;
+  const bool shut[] = {walls.sides[0] == closed, walls.sides[1] == closed, walls.sides[2] == closed,
+                       walls.sides[3] == closed};
+  auto keep = [](double at, double size, bool low, bool high, double& moved, double& speed) {
+    if (low && at < 0) {
+      moved -= at;
+      speed = std::max(speed, 0.0);
+    } else if (high && at > size) {
+      moved -= at - size;
+      speed = std::min(speed, 0.0);
+    }
+  };
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    if (!bodies.moves(b)) continue;
+    const Vec2 at = bodies.positionNow(b);
+    keep(at.x, walls.width, shut[0], shut[1], bodies.moved[b].x, bodies.velocity[b].x);
+    keep(at.y, walls.height, shut[2], shut[3], bodies.moved[b].y, bodies.velocity[b].y);
+  }
 }
 
 void RigidSystem::State::collectTouches(const std::vector<Contact>& contacts) {
