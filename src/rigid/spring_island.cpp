@@ -9,10 +9,17 @@ namespace smokebox {
 
 namespace {
 
+// The stretch at the end is not quite linear in the impulses.
+constexpr int kMostIterations = 6;
+constexpr double kSettled = 1e-9;  // of the first change
+
 double inertiaOf(Vec2 direction, Vec2 arm, const InverseMass& m) {
   const double lever = cross(arm, direction);
   return m.mass * dot(direction, direction) + m.inertia * lever * lever;
 }
+
+/// Whether the distance changes almost as its rate along the line says.
+bool isFar(double distance, Vec2 change) { return 4 * dot(change, change) < distance * distance; }
 
 InverseMass inverseOf(const Bodies& bodies, int body) {
   return body < 0 ? InverseMass{} : bodies.inverse[body];
@@ -82,8 +89,13 @@ void SpringIsland::warmStart(std::vector<Spring>& springs, Bodies& bodies, const
     auto velocity = [&](int body, Vec2 arm) { return body < 0 ? Vec2{} : bodies.velocityAt(body, arm); };
     const Vec2 before = spring.started ? (1 / hBefore) * (between - spring.between)
                                        : velocity(link.b, to.arm) - velocity(link.a, from.arm) + link.carried;
+    // Of the distance itself, unless the ends went past each other.
+    const double distanceBefore = length(between - hBefore * before);
+    const double rateBefore =
+        isFar(distance, hBefore * before) ? (distance - distanceBefore) / hBefore : dot(before, spring.line);
     spring.started = true;
-    spring.between = between;
+    spring.between = link.between = between;
+    link.distance = distance;
 
     const InverseMass a = inverseOf(bodies, link.a), b = inverseOf(bodies, link.b);
     for (int r = 0; r < 2; ++r)
@@ -92,7 +104,7 @@ void SpringIsland::warmStart(std::vector<Spring>& springs, Bodies& bodies, const
     const double stretch = distance - def.length;
     link.row[0] =
         SoftRow::of(def.stiffness, def.damping, springShares(def.stiffness, def.damping, link.inertia[0], h),
-                    stretch, dot(before, spring.line), h);
+                    stretch, rateBefore, h);
     // How fast the force grows across: its tension by its length.
     const double tight = def.length == 0 ? def.stiffness
                          : stretch > 0   ? def.stiffness * stretch / distance
@@ -142,37 +154,44 @@ void SpringIsland::factor(const Bodies& bodies) {
   matrix_.factor();
 }
 
-double SpringIsland::rateOf(const Link& link, int row, const Bodies& bodies) {
+std::array<double, 2> SpringIsland::ratesOf(const Link& link, const Bodies& bodies, double h) {
   Vec2 v = link.carried;
   if (link.b >= 0) v = v + bodies.velocityAt(link.b, link.armB);
   if (link.a >= 0) v = v - bodies.velocityAt(link.a, link.armA);
-  return dot(link.direction[row], v);
+  const double along = isFar(link.distance, h * v) ? (length(link.between + h * v) - link.distance) / h
+                                                   : dot(link.direction[0], v);
+  return {along, dot(link.direction[1], v)};
 }
 
-double SpringIsland::solve(std::vector<Spring>& springs, Bodies& bodies) {
-  double change = 0;
-  for (std::size_t k = 0; k < links_.size(); ++k) {
-    const Link& link = links_[k];
-    const double impulse[2] = {springs[link.spring].impulse, link.across};
-    for (int r = 0; r < 2; ++r) {
-      const SoftRow& row = link.row[r];
-      unknowns_[k][r] = row.on && link.inertia[r] > 0
-                            ? -(rateOf(link, r, bodies) + row.softness * impulse[r] + row.offset)
-                            : 0;
+double SpringIsland::solve(std::vector<Spring>& springs, Bodies& bodies, double h) {
+  double first = 0;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    double change = 0;
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      const Link& link = links_[k];
+      const double impulse[2] = {springs[link.spring].impulse, link.across};
+      const std::array<double, 2> rates = ratesOf(link, bodies, h);
+      for (int r = 0; r < 2; ++r) {
+        const SoftRow& row = link.row[r];
+        unknowns_[k][r] =
+            row.on && link.inertia[r] > 0 ? -(rates[r] + row.softness * impulse[r] + row.offset) : 0;
+      }
     }
+    matrix_.solve(unknowns_);
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      Link& link = links_[k];
+      const std::array<double, 2>& more = unknowns_[k];
+      springs[link.spring].impulse += more[0];
+      link.across += more[1];
+      change = std::max({change, std::fabs(more[0]) * link.inertia[0], std::fabs(more[1]) * link.inertia[1]});
+      const Vec2 impulse = more[0] * link.direction[0] + more[1] * link.direction[1];
+      if (link.a >= 0) bodies.push(link.a, link.armA, -impulse);
+      if (link.b >= 0) bodies.push(link.b, link.armB, impulse);
+    }
+    if (iteration == 0) first = change;
+    if (change <= kSettled * first) break;
   }
-  matrix_.solve(unknowns_);
-  for (std::size_t k = 0; k < links_.size(); ++k) {
-    Link& link = links_[k];
-    const std::array<double, 2>& more = unknowns_[k];
-    springs[link.spring].impulse += more[0];
-    link.across += more[1];
-    change = std::max({change, std::fabs(more[0]) * link.inertia[0], std::fabs(more[1]) * link.inertia[1]});
-    const Vec2 impulse = more[0] * link.direction[0] + more[1] * link.direction[1];
-    if (link.a >= 0) bodies.push(link.a, link.armA, -impulse);
-    if (link.b >= 0) bodies.push(link.b, link.armB, impulse);
-  }
-  return change;
+  return first;
 }
 
 std::size_t SpringIsland::bytes() const {

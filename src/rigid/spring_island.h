@@ -1,7 +1,7 @@
-// Springs that hang together and are few, or in a chain: solved at once. Each has two rows, along its line
-// and across it. The row across stands for the force's turning with the line; it acts only where that is too
-// stiff for the sub-step to follow (a long stretch of a strong spring), for it does not keep the angular
-// momentum to the last bit.
+// Springs that hang together and are few, or in a chain: solved at once, with the stretch that they have at
+// the sub-step's end. Each has two rows, along its line and across it. The row across stands for the force's
+// turning with the line; it acts only where that is too stiff for the sub-step to follow (a long stretch of a
+// strong spring), for it does not keep the angular momentum to the last bit.
 #pragma once
 #include <limits>
 
@@ -44,7 +44,7 @@ class SpringIsland {
   void warmStart(std::vector<Spring>& springs, Bodies& bodies, const StepClock& clock, double h,
                  double hBefore);
   /// The largest change of a rate, m/s.
-  double solve(std::vector<Spring>& springs, Bodies& bodies);
+  double solve(std::vector<Spring>& springs, Bodies& bodies, double h);
 
   std::size_t bytes() const;
 
@@ -52,7 +52,8 @@ class SpringIsland {
   struct Link {
     int spring = 0;
     int a = -1, b = -1;
-    Vec2 armA, armB, direction[2], carried;
+    Vec2 armA, armB, direction[2], carried, between;
+    double distance = 0;
     SoftRow row[2];
     double inertia[2] = {0, 0};
     double across = 0;  // impulse of the second row
@@ -62,7 +63,7 @@ class SpringIsland {
   };
 
   void factor(const Bodies& bodies);
-  static double rateOf(const Link& link, int row, const Bodies& bodies);
+  static std::array<double, 2> ratesOf(const Link& link, const Bodies& bodies, double h);
 
   std::vector<Link> links_;
   std::vector<Coupling> couplings_;

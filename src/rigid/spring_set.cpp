@@ -41,7 +41,6 @@ void SpringSet::moveEnd(int spring, Vec2 to) {
 }
 
 void SpringSet::beginStep(Bodies& bodies, double dt, int subSteps) {
-  if (empty()) return;
   clock_ = {dt, 0};
   for (int k = 0; k < static_cast<int>(moved_.size()); ++k)
     stale_ |= moved_[k] != 2 && moved_[k] != static_cast<char>(bodies.moves(k));
@@ -98,9 +97,9 @@ void SpringSet::warmStart(Bodies& bodies, double h) {
   clock_.elapsed += h;
 }
 
-double SpringSet::solve(Bodies& bodies, double) {
+double SpringSet::solve(Bodies& bodies, double h) {
   double change = 0;
-  for (SpringIsland& island : islands_) change = std::max(change, island.solve(springs_, bodies));
+  for (SpringIsland& island : islands_) change = std::max(change, island.solve(springs_, bodies, h));
   for (SpringSheet& sheet : sheets_) change = std::max(change, sheet.solve(bodies));
   return change;
 }

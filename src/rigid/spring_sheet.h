@@ -1,10 +1,10 @@
 // Many springs between particles (cloth). The velocities v that obey
 //   M v = M v* + J^T impulses,  impulse = -(bias + hardness J v)   (spring_row.h)
 // are found by conjugate gradients on M + J^T hardness J, started from the impulses of the last sub-step. All
-// that is ever added is a sum of forces between two ends along their line: momentum and angular momentum are
-// kept however early it stops. At rest it has nothing to do. Where it stops at its most iterations (very
-// stiff cloth), a last search along what was found and along the velocities themselves sees to it that the
-// energy does not grow.
+// that is ever added is a sum of forces between two ends: momentum is kept however early it stops, and
+// angular momentum as well as it converges. At rest it has nothing to do. Where it stops at its most
+// iterations (very stiff cloth), a last search along what was found and along the velocities themselves sees
+// to it that the energy does not grow.
 //
 // Sums run in a fixed order, with the two components of a vector as the two lanes that every x86-64 has.
 #pragma once
