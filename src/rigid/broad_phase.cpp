@@ -1,5 +1,6 @@
 #include "rigid/broad_phase.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace smokebox {
@@ -48,8 +49,9 @@ bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Ve
   if (bodies.moves(body)) box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
   if (listed_[body] && fat_[body].holds(box)) return false;
   // Along its way some more: what flies on does not ask for a new box in every step.
-  fat_[body] =
-      grown(joined(box, shifted(box, kStepsAhead * way)), kRoom * (bodies.moves(body) ? shape.reach : 0));
+  const double ahead = std::min(kStepsAhead, 0.5 * shape.reach / (length(way) + 1e-12));
+  const double room = kRoom * (bodies.moves(body) ? shape.reach : 0);
+  fat_[body] = grown(joined(box, shifted(box, ahead * way)), room);
   listed_[body] = 1;
   return true;
 }
@@ -142,14 +144,16 @@ void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, con
   }
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+  const auto known = static_cast<std::ptrdiff_t>(late_.size());
   for (const PairKey& key : found_) {
     const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), key,
                                      [](const BodyPair& pair, const PairKey& k) { return pair.key < k; });
     if (at != pairs_.end() && at->key == key) continue;
-    if (std::find(late_.begin(), late_.end(), key) != late_.end()) continue;
+    if (std::binary_search(late_.begin(), late_.begin() + known, key)) continue;
     found.push_back(key);
     late_.push_back(key);
   }
+  std::inplace_merge(late_.begin(), late_.begin() + known, late_.end());
 }
 
 }  // namespace smokebox
