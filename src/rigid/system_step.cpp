@@ -158,7 +158,7 @@ void RigidSystem::State::impacts(double h) {
     if (impact.count() == 0) return;
     anyStruck = true;
     findWays(h, true);
-    narrow.stir(bodies, way, broad, gravity, blocks, timeLeft);
+    if (narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) shareKnown = false;
     narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
   }
 }
@@ -188,7 +188,8 @@ void RigidSystem::State::warmStartAll(double h) {
 }
 
 void RigidSystem::State::findCalmShare() {
-  shareKnown = springs.empty() && joints.empty();
+  // After contacts were dropped or found anew, not all that the velocities gained is on record.
+  shareKnown = springs.empty() && joints.empty() && !stirred;
   if (!shareKnown) return;
   for (int b = kWalls; b < bodies.count(); ++b) {
     const Motion &v = bodies.velocity[b], &was = start[b];
@@ -229,6 +230,7 @@ void RigidSystem::State::solveContacts(double h) {
       1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
   // The more there are, the less it matters that each one is settled to the last.
   double settled = kSettled * (1 + 1e-3 * points) * h * length(gravity) + 1e-9;
+  stirred = false;
   for (int round = 0; round < 3; ++round) {
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       const double change = sweep(h, round == 0 && sweeps == 1);
@@ -240,6 +242,7 @@ void RigidSystem::State::solveContacts(double h) {
     findWays(h, false);
     // Who would stray from the way expected of it has its pairs looked at again, before it moves.
     if (!narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) break;
+    stirred = true;
     for (std::size_t k = 0; k < spare.size(); ++k)
       if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
     narrow.refresh(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
@@ -247,6 +250,7 @@ void RigidSystem::State::solveContacts(double h) {
   narrow.yieldCrushed(bodies, start);
   findWays(h, false);
   findCalmShare();
+  narrow.forgetBlows(start, 4 * h * length(gravity));
 }
 
 void RigidSystem::State::move(double h) {
