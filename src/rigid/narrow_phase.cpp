@@ -61,7 +61,8 @@ double safeShare(const ConvexPiece& a, const Sweep& sa, const ConvexPiece& b, co
   }
   auto gapAt = [&](double at) {
     Manifold manifold;
-    if (!collide(a, frameAt(sa, at), b, frameAt(sb, at), deep, manifold)) return deep;
+    const Frame fa = frameAt(sa, at), fb = frameAt(sb, at);
+    if (!collide(a, fa, b, fb, deep, manifold)) return std::max(closestPoints(a, fa, b, fb).distance, deep);
     const double gap = manifold.points[0].gap;
     return manifold.count == 2 ? std::min(gap, manifold.points[1].gap) : gap;
   };
