@@ -29,6 +29,7 @@ struct RigidSystem::State {
   void setJoined(const JointDef& joint, bool on);
   double sweep(double h, bool first);
   void findCalmShare();
+  void yieldTorn();
   void findWays(double h, bool withStruck);
   void impacts(double h);
   void keepInside();
