@@ -405,22 +405,6 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
   return any;
 }
 
-void NarrowPhase::forgetBlows(const std::vector<Motion>& before, double least) {
-  auto at = [&](int body, Vec2 arm) {
-    const Motion& v = before[body];
-    return Vec2{v.x - v.turn * arm.y, v.y + v.turn * arm.x};
-  };
-  for (Contact& c : lively_)
-    for (int k = 0; k < c.count; ++k) {
-      ContactPoint& p = c.points[k];
-      const double closing = -dot(c.normal, at(c.b, p.armB) - at(c.a, p.armA));
-      if (closing <= least || p.impulseN == 0) continue;
-      const double kept = std::max(p.impulseN - p.massN * closing, 0.0);
-      p.impulseT *= kept / p.impulseN;
-      p.impulseN = kept;
-    }
-}
-
 void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {
   crushed_.clear();
   auto isCrushed = [&](const Contact& c) {

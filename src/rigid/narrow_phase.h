@@ -32,9 +32,6 @@ class NarrowPhase {
   /// Pairs that would pass through each other by moving `way`: both are stopped where they meet.
   void stopPassing(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
                    std::vector<Motion>& way);
-  /// What stopped points that closed in faster than `least` (`before` the solver) will not be needed again:
-  /// only the rest of their impulses is carried on to the next sub-step.
-  void forgetBlows(const std::vector<Motion>& before, double least);
   /// Bodies between others that close in whatever pushes back (a press): no impulses can part them all. These
   /// are not carried on, or they would grow without bound, and make none faster than the fastest around it
   /// was `before`.

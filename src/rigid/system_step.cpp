@@ -270,7 +270,6 @@ void RigidSystem::State::solveContacts(double h) {
   narrow.yieldCrushed(bodies, start);
   findWays(h, false);
   findCalmShare();
-  narrow.forgetBlows(start, 4 * h * length(gravity));
 }
 
 void RigidSystem::State::move(double h) {
