@@ -440,18 +440,26 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
     const int a = place(c.a), b = place(c.b);
     if (a >= 0) crushSpeed_[a] = std::max(crushSpeed_[a], speed(c.b));
     if (b >= 0) crushSpeed_[b] = std::max(crushSpeed_[b], speed(c.a));
-    if (a >= 0 || b >= 0)
-      for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;
   }
+  bool any = false;
   for (std::size_t k = 0; k < crushed_.size(); ++k) {
     Motion& v = bodies.velocity[crushed_[k]];
     const double linear = length(v.linear()),
                  turning = std::abs(v.turn) * measures_[crushed_[k]].turningReach;
-    if (linear > crushSpeed_[k]) {
-      v.x *= crushSpeed_[k] / linear;
-      v.y *= crushSpeed_[k] / linear;
+    const double most = crushSpeed_[k];
+    crushSpeed_[k] = linear > most || turning > most ? -1 : 0;  // from here on: whether it was
+    any |= crushSpeed_[k] < 0;
+    if (linear > most) {
+      v.x *= most / linear;
+      v.y *= most / linear;
     }
-    if (turning > crushSpeed_[k]) v.turn *= crushSpeed_[k] / turning;
+    if (turning > most) v.turn *= most / turning;
+  }
+  if (!any) return;
+  for (Contact& c : lively_) {
+    const int a = place(c.a), b = place(c.b);
+    if ((a >= 0 && crushSpeed_[a] < 0) || (b >= 0 && crushSpeed_[b] < 0))
+      for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;
   }
 }
 
