@@ -42,11 +42,11 @@ int RigidSystem::add(const BodyDef& def) {
   bodies.turn.push_back(turnBy(def.angleRad));
   bodies.there.push_back(1);
   s.resume.push_back({});
-  s.fresh.push_back(1);
+  s.fresh.push_back(3);
   s.departed.push_back(0);
   s.targetPlace.push_back(def.position);
   s.targetAngle.push_back(def.angleRad);
-  s.gained.push_back({});
+  s.ahead.push_back({});
   s.setInverse(body);
   if (def.held) {
     s.resume[body] = bodies.velocity[body];
@@ -103,24 +103,39 @@ void RigidSystem::setVelocity(int body, Vec2 velocity) {
   Motion& v = s.bodies.def[body].held ? s.resume[body] : s.bodies.velocity[body];
   v.x = velocity.x;
   v.y = velocity.y;
-  s.fresh[body] = 1;
+  s.ahead[body].x = s.ahead[body].y = 0;
+  s.fresh[body] |= 1;
 }
 
 void RigidSystem::setSpin(int body, double spin) {
   State& s = *state_;
   (s.bodies.def[body].held ? s.resume[body] : s.bodies.velocity[body]).turn = spin;
+  s.ahead[body].turn = 0;
+  s.fresh[body] |= 2;
 }
 
 void RigidSystem::applyImpulse(int body, Vec2 at, Vec2 impulse) {
   State& s = *state_;
+  Motion &v = s.bodies.velocity[body], &ahead = s.ahead[body];
+  const Motion was = v;
   s.bodies.push(body, at - s.bodies.positionNow(body), impulse);
+  // The velocity of half a sub-step ago that damping makes this one of.
+  const auto since = s.fresh[body] ? State::Drive{} : s.drives[body].half;
+  auto grow = [](double before, double& now, double& later, double left) {
+    const double more = (now - before) * (1 / std::max(left, 1e-6) - 1);
+    now += more;
+    later -= more;
+  };
+  grow(was.x, v.x, ahead.x, since.linear);
+  grow(was.y, v.y, ahead.y, since.linear);
+  grow(was.turn, v.turn, ahead.turn, since.angular);
 }
 
 void RigidSystem::hold(int body) {
   State& s = *state_;
   s.bodies.def[body].held = true;
   s.bodies.velocity[body] = {};
-  s.resume[body] = {};
+  s.resume[body] = s.ahead[body] = {};
   s.setInverse(body);
 }
 
@@ -129,7 +144,7 @@ void RigidSystem::release(int body) {
   if (!s.bodies.def[body].held) return;
   s.bodies.def[body].held = false;
   s.bodies.velocity[body] = s.resume[body];
-  s.fresh[body] = 1;
+  s.fresh[body] = 3;
   s.setInverse(body);
 }
 
@@ -183,13 +198,13 @@ Vec2 RigidSystem::position(int body) const { return state_->bodies.position[body
 double RigidSystem::angleRad(int body) const { return state_->bodies.angleRad[body]; }
 bool RigidSystem::held(int body) const { return state_->bodies.def[body].held; }
 
-// Velocities are kept for the middle of the last sub-step: half of what that one changed brings them to now.
+// Velocities are kept for the middle of the last sub-step.
 Vec2 RigidSystem::velocity(int body) const {
   const State& s = *state_;
-  return s.bodies.velocity[body].linear() + 0.5 * s.gained[body].linear();
+  return s.bodies.velocity[body].linear() + s.ahead[body].linear();
 }
 double RigidSystem::spin(int body) const {
-  return state_->bodies.velocity[body].turn + 0.5 * state_->gained[body].turn;
+  return state_->bodies.velocity[body].turn + state_->ahead[body].turn;
 }
 
 bool RigidSystem::springIsThere(int spring) const { return state_->springs.isThere(spring); }

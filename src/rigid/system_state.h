@@ -24,6 +24,8 @@ struct RigidSystem::State {
   void endStep(double dt);
 
   void addWalls();
+  void startVelocities(double h);
+  void findAhead(int body);
   void setInverse(int body);
   /// Lets the bodies of a joint pass through each other, or no longer.
   void setJoined(const JointDef& joint, bool on);
@@ -45,11 +47,11 @@ struct RigidSystem::State {
 
   Bodies bodies;
   std::vector<Motion> resume;     // velocity that a held body goes on with
-  std::vector<char> fresh;        // velocity was set: it belongs to now, not to the middle of a sub-step
+  std::vector<char> fresh;        // velocity (1), spin (2) was set: it is that of now, not of half a sub-step ago
   std::vector<char> departed;     // has been reported
   std::vector<Vec2> targetPlace;  // of bodies without mass: at the end of the coming step
   std::vector<double> targetAngle;
-  std::vector<Motion> gained;     // of the velocity in the last sub-step
+  std::vector<Motion> ahead;      // what brings the velocity of the last sub-step's middle to its end
   std::vector<Motion> before;     // velocity before it
   std::vector<Motion> struck;     // what impacts add to a body's way in this sub-step
   std::vector<Motion> start;      // velocities before the contact solver
@@ -58,12 +60,16 @@ struct RigidSystem::State {
   bool stirred = false, anyStruck = false, mayBounce = false;
   std::vector<Motion> way;  // all of that
 
-  /// What a sub-step does to a body's velocity by itself.
+  /// What a time does to a body's velocity by itself: gravity, and damping that decays exponentially.
   struct Drive {
-    Vec2 pull;                       // m/s^2
-    double linear = 1, angular = 1;  // what damping leaves
+    Vec2 gain;                       // m/s
+    double linear = 1, angular = 1;  // what is left of it
   };
-  std::vector<Drive> drives;
+  struct Drives {
+    Drive whole, half;  // of a sub-step
+  };
+  Drive driveOver(const BodyDef& def, double time) const;
+  std::vector<Drives> drives;
   BroadPhase broad;
   NarrowPhase narrow;
   ContactBlocks blocks;

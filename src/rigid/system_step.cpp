@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/errors.h"
+#include "base/maths.h"
 #include "rigid/contact_sweeps.h"
 #include "rigid/system_state.h"
 
@@ -62,7 +63,7 @@ void RigidSystem::State::addWalls() {
     departed.push_back(0);
     targetPlace.push_back(def.position);
     targetAngle.push_back(0);
-    gained.push_back({});
+    ahead.push_back({});
   }
 }
 
@@ -73,29 +74,52 @@ void RigidSystem::State::setInverse(int body) {
   bodies.inverse[body] = {1 / def.mass, def.inertia > 0 ? 1 / def.inertia : 0};
 }
 
-void RigidSystem::State::beginStep(double step) {
-  dt = timeLeft = step;
-  const double h = dt / method.subSteps;
+RigidSystem::State::Drive RigidSystem::State::driveOver(const BodyDef& def, double time) const {
+  const double c = def.linearDamping, x = c * time;
+  Drive drive;
+  if (c > 0) drive.linear = exact::exp(-x);
+  if (def.angularDamping > 0) drive.angular = exact::exp(-def.angularDamping * time);
+  // The integral of exp(-c t).
+  const double effective = x < 1e-3 ? time * (1 - x / 2 * (1 - x / 3 * (1 - x / 4))) : (1 - drive.linear) / c;
+  drive.gain = effective * def.gravityScale * gravity;
+  return drive;
+}
+
+// Velocities belong to the middle of a sub-step: those that were set are taken half of one back, and where
+// gravity has changed, what it did to the last half is put right.
+void RigidSystem::State::startVelocities(double h) {
+  constexpr double kLeast = 1e-6;  // of a velocity; what is damped more has no past to come from
+  drives.resize(bodies.count());
   for (int b = kWalls; b < bodies.count(); ++b) {
     if (!bodies.there[b]) continue;
     Motion& v = bodies.velocity[b];
-    if (bodies.def[b].mass <= 0) {
+    const BodyDef& def = bodies.def[b];
+    if (def.mass <= 0) {
       const Vec2 by = targetPlace[b] - bodies.position[b];
       v = {by.x / dt, by.y / dt, (targetAngle[b] - bodies.angleRad[b]) / dt};
-    } else if (fresh[b] && bodies.moves(b)) {
-      const double back = 0.5 * h * bodies.def[b].gravityScale;
-      v.x -= back * gravity.x;
-      v.y -= back * gravity.y;
-      fresh[b] = 0;
     }
+    if (!bodies.moves(b)) {
+      drives[b] = {};
+      continue;
+    }
+    const Drive now = driveOver(def, 0.5 * h), was = drives[b].half;
+    drives[b] = {driveOver(def, h), now};
+    if (fresh[b] & 1) {
+      const double back = 1 / std::max(now.linear, kLeast);
+      v.x = back * (v.x - now.gain.x);
+      v.y = back * (v.y - now.gain.y);
+    } else if (now.gain != was.gain) {
+      v.x += was.gain.x - now.gain.x;
+      v.y += was.gain.y - now.gain.y;
+    }
+    if (fresh[b] & 2) v.turn /= std::max(now.angular, kLeast);
+    fresh[b] = 0;
   }
-  drives.resize(bodies.count());
-  for (int b = 0; b < bodies.count(); ++b) {
-    const BodyDef& def = bodies.def[b];
-    drives[b] = bodies.moves(b) ? Drive{def.gravityScale * gravity, 1 / (1 + h * def.linearDamping),
-                                        1 / (1 + h * def.angularDamping)}
-                                : Drive{};
-  }
+}
+
+void RigidSystem::State::beginStep(double step) {
+  dt = timeLeft = step;
+  startVelocities(dt / method.subSteps);
   touches.clear();
   broad.update(bodies, gravity, dt);
   narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
@@ -120,9 +144,9 @@ void RigidSystem::State::predict(double h) {
   if (timeLeft < 1.5 * h) before = bodies.velocity;  // the last one
   for (int b = kWalls; b < bodies.count(); ++b) {
     Motion& v = bodies.velocity[b];
-    const Drive& drive = drives[b];
-    v.x = drive.linear * (v.x + h * drive.pull.x);
-    v.y = drive.linear * (v.y + h * drive.pull.y);
+    const Drive& drive = drives[b].whole;
+    v.x = drive.linear * v.x + drive.gain.x;
+    v.y = drive.linear * v.y + drive.gain.y;
     v.turn *= drive.angular;
   }
   narrow.refresh(bodies, broad, h, nullptr);
@@ -329,6 +353,22 @@ void RigidSystem::State::collectTouches(const std::vector<Contact>& contacts) {
   }
 }
 
+// Half a sub-step of what the body does by itself, and half of what the last one gave it beyond that; impacts
+// come between, and are over.
+void RigidSystem::State::findAhead(int body) {
+  ahead[body] = {};
+  if (!bodies.moves(body)) return;
+  const Motion &v = bodies.velocity[body], &was = before[body], &s = struck[body];
+  const Drive &whole = drives[body].whole, &half = drives[body].half;
+  Motion& to = ahead[body];
+  to = {(half.linear - 1) * v.x + half.gain.x, (half.linear - 1) * v.y + half.gain.y,
+        (half.angular - 1) * v.turn};
+  if (s.x != 0 || s.y != 0 || s.turn != 0) return;
+  to.x += 0.5 * (v.x - (whole.linear * was.x + whole.gain.x));
+  to.y += 0.5 * (v.y - (whole.linear * was.y + whole.gain.y));
+  to.turn += 0.5 * (v.turn - whole.angular * was.turn);
+}
+
 void RigidSystem::State::endStep(double step) {
   blocks.readBack(narrow.calm());
   for (std::size_t k = 0; k < spare.size(); ++k)
@@ -356,13 +396,11 @@ void RigidSystem::State::endStep(double step) {
 
   for (int b = kWalls; b < bodies.count(); ++b) {
     if (!bodies.there[b]) continue;
-    const Motion &v = bodies.velocity[b], &was = before[b], &m = bodies.moved[b];
-    const bool hit = struck[b].x != 0 || struck[b].y != 0 || struck[b].turn != 0;
-    gained[b] = hit ? Motion{} : Motion{v.x - was.x, v.y - was.y, v.turn - was.turn};
+    findAhead(b);
+    const Motion &v = bodies.velocity[b], &m = bodies.moved[b];
     if (bodies.def[b].mass <= 0) {
       bodies.position[b] = targetPlace[b];
       bodies.angleRad[b] = targetAngle[b];
-      gained[b] = {};
     } else {
       bodies.position[b] = bodies.position[b] + m.linear();
       bodies.angleRad[b] += m.turn;

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "../unit/rigid_cases.h"
+#include "support/rigid_cases.h"
 #include "rigid/collide.h"
 #include "rigid/collide_bodies.h"
 #include "rigid/distance.h"
@@ -13,7 +13,7 @@
 namespace smokebox {
 namespace {
 
-using namespace rigid_cases;
+using namespace test;
 
 struct Pair {
   ConvexPiece a, b;

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "support/rigid_polygons.h"
+#include "support/rigid_cases.h"
 #include "support/rigid_world.h"
 
 namespace smokebox::test {

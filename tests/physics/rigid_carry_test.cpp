@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "support/rigid_polygons.h"
+#include "support/rigid_cases.h"
 #include "support/rigid_world.h"
 
 namespace smokebox::test {

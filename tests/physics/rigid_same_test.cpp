@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
-#include "support/rigid_polygons.h"
+#include "support/rigid_cases.h"
 #include "support/rigid_world.h"
 
 namespace smokebox::test {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/rigid_polygons.h"
+#include "support/rigid_cases.h"
 #include "support/rigid_reference.h"
 #include "support/rigid_world.h"
 

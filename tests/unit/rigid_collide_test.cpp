@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "rigid/collide.h"
-#include "rigid_cases.h"
+#include "support/rigid_cases.h"
 
 namespace smokebox {
 namespace {
 
-using namespace rigid_cases;
+using namespace test;
 
 ConvexPiece box(double width, double height) {
   const double x = width / 2, y = height / 2;

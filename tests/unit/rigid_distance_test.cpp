@@ -3,12 +3,12 @@
 
 #include "rigid/collide.h"
 #include "rigid/distance.h"
-#include "rigid_cases.h"
+#include "support/rigid_cases.h"
 
 namespace smokebox {
 namespace {
 
-using namespace rigid_cases;
+using namespace test;
 
 TEST(RigidDistance, RandomPairsAgreeWithAllEdgesAgainstAll) {
   // The distance is the slow one's, the points lie that far apart along the normal.

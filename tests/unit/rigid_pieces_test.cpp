@@ -4,12 +4,12 @@
 #include "rigid/collide.h"
 #include "rigid/collide_bodies.h"
 #include "rigid/pieces.h"
-#include "rigid_cases.h"
+#include "support/rigid_cases.h"
 
 namespace smokebox {
 namespace {
 
-using namespace rigid_cases;
+using namespace test;
 
 double areaOf(const std::vector<ConvexPiece>& pieces) {
   double area = 0;

@@ -5,12 +5,12 @@
 #include "rigid/collide_bodies.h"
 #include "rigid/distance.h"
 #include "rigid/pieces.h"
-#include "rigid_cases.h"
+#include "support/rigid_cases.h"
 
 namespace smokebox {
 namespace {
 
-using namespace rigid_cases;
+using namespace test;
 
 struct Contacts {
   std::vector<Manifold> manifolds;

@@ -1,4 +1,4 @@
-// Convex pieces at random, and their distance the slow way.
+// Polygons and convex pieces at random, the same on every machine, and the distance of pieces the slow way.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include "base/maths.h"
 #include "geometry/shape.h"
 #include "rigid/convex.h"
+#include "support/rigid_world.h"
 
-namespace smokebox::rigid_cases {
+namespace smokebox::test {
 
-/// Numbers that are the same on every machine.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed * 2654435761u + 1) {}
@@ -29,6 +29,19 @@ class Dice {
  private:
   std::uint64_t state_;
 };
+
+/// Star-shaped, with 3 to 8 corners (concave: 6 to 10, every second drawn in), of a size within `radius`.
+inline std::shared_ptr<const BodyShape> randomPolygon(Dice& dice, bool concave, double radius = 0.6) {
+  const int corners =
+      concave ? 2 * static_cast<int>(dice.between(3, 6)) : static_cast<int>(dice.between(3, 9));
+  PolygonShape polygon;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2 * kPi * (k + (concave ? 0 : dice.between(-0.3, 0.3))) / corners;
+    const double r = radius * (concave && k % 2 == 0 ? dice.between(0.35, 0.5) : dice.between(0.9, 1));
+    polygon.points.push_back({r * exact::cos(angle), r * exact::sin(angle)});
+  }
+  return bodyShape(polygon);
+}
 
 /// Corners on an ellipse at random angles; 1: a disk, 2: a capsule.
 inline ConvexPiece randomPiece(Dice& dice, int corners, double radius) {
@@ -91,4 +104,4 @@ inline double slowOverlap(const ConvexPiece& a, const Frame& fa, const ConvexPie
   return most;
 }
 
-}  // namespace smokebox::rigid_cases
+}  // namespace smokebox::test
