@@ -9,6 +9,8 @@ namespace {
 
 using Lanes = ContactBlocks::Lanes;
 constexpr int kColours = 64;
+// So few contacts would leave most lanes empty: they are solved one by one.
+constexpr int kFew = 12;
 
 struct Motions {
   Lanes x, y, turn;
@@ -54,6 +56,11 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
   place_.assign(count, -1);
   start_.assign(kColours + 1, 0);
   rest.clear();
+  blocks_.clear();
+  if (count <= kFew) {
+    for (int k = 0; k < count; ++k) rest.push_back(k);
+    return;
+  }
   // First what bears along gravity, then what bears sideways, last what is merely near: a sweep in this order
   // leaves the least undone, and does not change with what comes near.
   for (const int rank : {0, 1, 2})

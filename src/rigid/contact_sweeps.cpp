@@ -44,10 +44,6 @@ void warmStart(Bodies& bodies, const std::vector<Contact>& contacts) {
       pushApart(bodies, contact, contact.points[k], contact.points[k].impulseN, contact.points[k].impulseT);
 }
 
-namespace {
-
-/// Both normal impulses of a contact at once: the 2 x 2 linear complementarity problem by its four cases
-/// (Murty; as in Catto's block solver). `speed`: what each point's parting speed lacks without any impulse.
 void solveBoth(const double k[3], const double speed[2], double impulse[2]) {
   const double det = k[0] * k[2] - k[1] * k[1];
   impulse[0] = (k[1] * speed[1] - k[2] * speed[0]) / det;
@@ -58,6 +54,22 @@ void solveBoth(const double k[3], const double speed[2], double impulse[2]) {
   if (k[1] * impulse[0] + speed[1] >= 0) return;
   impulse[0] = 0;
   impulse[1] = std::max(-speed[1] / k[2], 0.0);
+}
+
+namespace {
+
+/// What impulses of 1 at a contact's points make of their parting speeds. False: the two are at one place, or
+/// there is only one.
+bool responses(const Bodies& bodies, const Contact& contact, double k[3]) {
+  const ContactPoint &p = contact.points[0], &q = contact.points[1];
+  if (contact.count != 2 || !(p.massN > 0) || !(q.massN > 0)) return false;
+  const InverseMass a = bodies.inverse[contact.a], b = bodies.inverse[contact.b];
+  const Vec2 n = contact.normal;
+  k[0] = 1 / p.massN;
+  k[1] = a.mass + b.mass + a.inertia * cross(p.armA, n) * cross(q.armA, n) +
+         b.inertia * cross(p.armB, n) * cross(q.armB, n);
+  k[2] = 1 / q.massN;
+  return k[0] * k[2] - k[1] * k[1] > 1e-6 * k[0] * k[2];
 }
 
 }  // namespace
@@ -71,22 +83,13 @@ double solve(Bodies& bodies, std::vector<Contact>& contacts, double h) {
       const double gap = p.gap + gapMoved(bodies, contact, p);
       lacks[k] = partingSpeed(bodies, contact, p) + std::max(gap, 0.0) / h;
     }
-    double total[2] = {0, 0};
-    const ContactPoint &p0 = contact.points[0], &p1 = contact.points[1];
-    bool both = contact.count == 2 && p0.massN > 0 && p1.massN > 0;
+    double total[2] = {0, 0}, response[3];
+    const bool both = responses(bodies, contact, response);
     if (both) {
-      const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
-      const Vec2 n = contact.normal;
-      const double k[3] = {1 / p0.massN,
-                           ma.mass + mb.mass + ma.inertia * cross(p0.armA, n) * cross(p1.armA, n) +
-                               mb.inertia * cross(p0.armB, n) * cross(p1.armB, n),
-                           1 / p1.massN};
-      both = k[0] * k[2] - k[1] * k[1] > 1e-6 * k[0] * k[2];  // else two points at one place
-      if (both) {
-        const double free[2] = {lacks[0] - k[0] * p0.impulseN - k[1] * p1.impulseN,
-                                lacks[1] - k[1] * p0.impulseN - k[2] * p1.impulseN};
-        solveBoth(k, free, total);
-      }
+      const double before[2] = {contact.points[0].impulseN, contact.points[1].impulseN};
+      const double free[2] = {lacks[0] - response[0] * before[0] - response[1] * before[1],
+                              lacks[1] - response[1] * before[0] - response[2] * before[1]};
+      solveBoth(response, free, total);
     }
     for (int k = 0; k < contact.count; ++k) {
       ContactPoint& p = contact.points[k];
@@ -114,13 +117,13 @@ double solve(Bodies& bodies, std::vector<Contact>& contacts, double h) {
 }
 
 void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most) {
-  for (Contact& contact : contacts)
-    for (int k = 0; k < contact.count; ++k) {
-      ContactPoint& p = contact.points[k];
-      contact.total += p.impulseN;
+  for (Contact& contact : contacts) {
+    for (int k = 0; k < contact.count; ++k) contact.total += contact.points[k].impulseN;
+    auto lacking = [&](const ContactPoint& p) {
       const double gap = p.gap + gapMoved(bodies, contact, p);
-      if (gap >= 0) continue;
-      const double impulse = p.massN * std::min(-share * gap, most);
+      return gap < 0 ? std::max(share * gap, -most) : gap;
+    };
+    auto push = [&](const ContactPoint& p, double impulse) {
       auto shift = [&](int body, Vec2 arm, double sign) {
         Motion& d = bodies.moved[body];
         const InverseMass& m = bodies.inverse[body];
@@ -130,7 +133,23 @@ void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, doub
       };
       shift(contact.a, p.armA, -1);
       shift(contact.b, p.armB, 1);
+    };
+    double lacks[2] = {0, 0}, response[3];
+    for (int k = 0; k < contact.count; ++k) lacks[k] = lacking(contact.points[k]);
+    if (lacks[0] >= 0 && lacks[1] >= 0) continue;
+    if (responses(bodies, contact, response)) {
+      double impulse[2];
+      solveBoth(response, lacks, impulse);
+      for (int k = 0; k < 2; ++k)
+        if (impulse[k] > 0) push(contact.points[k], impulse[k]);
+      continue;
     }
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactPoint& p = contact.points[k];
+      const double lack = lacking(p);
+      if (lack < 0) push(p, -p.massN * lack);
+    }
+  }
 }
 
 }  // namespace smokebox

@@ -190,29 +190,18 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   double normal[2] = {0, 0};
   const double keep = 1 + contact.bounce;
   for (int k = 0; k < count; ++k) contact.approach = std::max(contact.approach, -approaching(struck[k]));
-  bool together = false;
-  if (count == 2) {  // both at once, if both push
-    const double k00 = response(struck[0], n, struck[0], n), k01 = response(struck[0], n, struck[1], n),
-                 k11 = response(struck[1], n, struck[1], n);
-    const double r0 = -keep * approaching(struck[0]), r1 = -keep * approaching(struck[1]);
-    const double det = k00 * k11 - k01 * k01;
-    if (det > 1e-9 * k00 * k11) {
-      normal[0] = (k11 * r0 - k01 * r1) / det;
-      normal[1] = (k00 * r1 - k01 * r0) / det;
-      together = normal[0] >= 0 && normal[1] >= 0;
-      if (together)
-        for (int k = 0; k < 2; ++k) pushNormal(struck[k], normal[k]);
-    }
+  const double k00 = response(struck[0], n, struck[0], n);
+  const double k01 = count == 2 ? response(struck[0], n, struck[1], n) : 0;
+  const double k11 = count == 2 ? response(struck[1], n, struck[1], n) : 0;
+  if (count == 2 && k00 * k11 - k01 * k01 > 1e-9 * k00 * k11) {  // both at once
+    const double k[3] = {k00, k01, k11};
+    const double speed[2] = {keep * approaching(struck[0]), keep * approaching(struck[1])};
+    solveBoth(k, speed, normal);
+  } else {  // one, or two at one place
+    normal[0] = -keep * approaching(struck[0]) / k00;
   }
-  if (!together) {
-    normal[0] = normal[1] = 0;
-    for (int k = 0; k < count; ++k) {
-      const double speed = approaching(struck[k]);
-      if (speed >= -least) continue;
-      normal[k] = -keep * speed / response(struck[k], n, struck[k], n);
-      pushNormal(struck[k], normal[k]);
-    }
-  }
+  for (int k = 0; k < count; ++k)
+    if (normal[k] > 0) pushNormal(struck[k], normal[k]);
   // After the normal impulses: friction at most stops the sliding, so it can only take energy.
   for (int k = 0; k < count; ++k) {
     const Vec2 slip =

@@ -46,8 +46,8 @@ struct RigidSystem::State {
   ThreadPool& pool;
 
   Bodies bodies;
-  std::vector<Motion> resume;     // velocity that a held body goes on with
-  std::vector<char> fresh;        // velocity (1), spin (2) was set: it is that of now, not of half a sub-step ago
+  std::vector<Motion> resume;  // velocity that a held body goes on with
+  std::vector<char> fresh;  // velocity (1), spin (2) was set: it is that of now, not of half a sub-step ago
   std::vector<char> departed;     // has been reported
   std::vector<Vec2> targetPlace;  // of bodies without mass: at the end of the coming step
   std::vector<double> targetAngle;

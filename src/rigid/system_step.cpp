@@ -19,6 +19,9 @@ constexpr long kManySweeps = 6000, kTwoSweeps = 30000;
 constexpr double kSettled = 1e-3;
 // ... or by this share of what the first sweep changed beyond that: of impacts.
 constexpr double kSettledShare = 1e-2;
+// Both are this much less for a few points.
+constexpr double kSettledFew = 1e-8;
+constexpr long kFewPoints = 100;
 // Of an overlap, in each sub-step.
 constexpr double kSeparateShare = 0.2;
 // Overlapping bodies are moved apart at this speed at most, m/s.
@@ -271,14 +274,16 @@ void RigidSystem::State::solveContacts(double h) {
   warmStartAll(h);
   const long points =
       1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
-  // The more there are, the less it matters that each one is settled to the last.
-  double settled = kSettled * (1 + 1e-3 * points) * h * length(gravity) + 1e-9;
+  // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
+  const double care = points <= kFewPoints ? kSettledFew : 1;
+  double settled = care * kSettled * (1 + 1e-3 * points) * h * length(gravity) + care * 1e-9;
   stirred = false;
   for (int round = 0; round < 3; ++round) {
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       const double change = sweep(h, round == 0 && sweeps == 1);
       if (sweeps == 1)
-        settled = std::max(settled, std::min(kSettledShare, 1e-6 * points) * (change - h * length(gravity)));
+        settled =
+            std::max(settled, care * std::min(kSettledShare, 1e-6 * points) * (change - h * length(gravity)));
       if (change <= settled) break;
       if ((sweeps + 1) * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
     }

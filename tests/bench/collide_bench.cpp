@@ -5,10 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "support/rigid_cases.h"
 #include "rigid/collide.h"
 #include "rigid/collide_bodies.h"
 #include "rigid/distance.h"
+#include "support/rigid_cases.h"
 
 namespace smokebox {
 namespace {

@@ -36,8 +36,8 @@ TEST(RigidFree, ASpinningBodyKeepsItsSpinForAThousandTurns) {
 }
 
 TEST(RigidFree, ARodStruckAtItsEndTurnsAboutItsCentreOfPercussion) {
-  // Truth: RB16, an impulse J across the end of a free rod: v = J / m, w = 6 J / (m L); the point 2 L / 3 from
-  // the struck end is at rest at this moment, and the centre then goes on straight at J / m.
+  // Truth: RB16, an impulse J across the end of a free rod: v = J / m, w = 6 J / (m L); the point 2 L / 3
+  // from the struck end is at rest at this moment, and the centre then goes on straight at J / m.
   for (const double angle : {0.0, 0.7, -2.0})
     for (const double length : {0.3, 2.0})
       for (const double impulse : {1e-3, 5.0, 4e3}) {
