@@ -26,6 +26,7 @@ struct RigidSystem::State {
   void addWalls();
   void startVelocities(double h);
   void findAhead(int body);
+  void giveBackSpare();
   void setInverse(int body);
   /// Lets the bodies of a joint pass through each other, or no longer.
   void setJoined(const JointDef& joint, bool on);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/maths.h"
@@ -185,6 +186,7 @@ void RigidSystem::State::impacts(double h) {
     if (impact.count() == 0) return;
     anyStruck = true;
     findWays(h, true);
+    giveBackSpare();
     if (narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) shareKnown = false;
     narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
   }
@@ -275,7 +277,8 @@ void RigidSystem::State::solveContacts(double h) {
   const long points =
       1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
   // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
-  const double care = points <= kFewPoints ? kSettledFew : 1;
+  const bool few = points <= kFewPoints && springs.empty() && joints.empty();
+  const double care = few ? kSettledFew : 1;
   double settled = care * kSettled * (1 + 1e-3 * points) * h * length(gravity) + care * 1e-9;
   stirred = false;
   for (int round = 0; round < 3; ++round) {
@@ -288,6 +291,7 @@ void RigidSystem::State::solveContacts(double h) {
       if ((sweeps + 1) * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
     }
     findWays(h, false);
+    giveBackSpare();
     // Who would stray from the way expected of it has its pairs looked at again, before it moves.
     if (!narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) break;
     stirred = true;
@@ -358,6 +362,19 @@ void RigidSystem::State::collectTouches(const std::vector<Contact>& contacts) {
   }
 }
 
+// Writes the impulses of those that are solved one by one where the others' are: whoever drops them finds
+// them.
+void RigidSystem::State::giveBackSpare() {
+  for (std::size_t k = 0; k < spare.size(); ++k) {
+    Contact& to = narrow.calm()[uncoloured[k]];
+    for (int p = 0; p < spare[k].count; ++p) {
+      to.points[p].impulseN = spare[k].points[p].impulseN;
+      to.points[p].impulseT = spare[k].points[p].impulseT;
+    }
+    to.total += std::exchange(spare[k].total, 0);
+  }
+}
+
 // Half a sub-step of what the body does by itself, and half of what the last one gave it beyond that; impacts
 // come between, and are over.
 void RigidSystem::State::findAhead(int body) {
@@ -376,9 +393,7 @@ void RigidSystem::State::findAhead(int body) {
 
 void RigidSystem::State::endStep(double step) {
   blocks.readBack(narrow.calm());
-  for (std::size_t k = 0; k < spare.size(); ++k)
-    if (spare[k].count > 0) narrow.calm()[uncoloured[k]] = spare[k];
-
+  giveBackSpare();
   contactTotals = {};
   auto count = [&](const Contact& contact) {
     for (int k = 0; k < contact.count; ++k) {
