@@ -13,11 +13,14 @@ struct Anchor {
 };
 
 /// Force along the line between the anchors: stiffness (distance - length) + damping (rate of the distance).
+/// With slack it pulls when it is longer than `length`, pushes when it is shorter than length - slack (by the
+/// stiffness times what is missing to that), and does nothing between: a string has all its length as slack.
 struct SpringDef {
   Anchor from, to;
   double length = 0;     // at rest, m
   double stiffness = 0;  // N/m, 0 or more
   double damping = 0;    // N s/m, 0 or more
+  double slack = 0;      // m, 0 or more
   /// Breaks at a step's end when the distance is over (1 + tear) length.
   double tear = std::numeric_limits<double>::infinity();
 };

@@ -101,10 +101,12 @@ void SpringIsland::warmStart(std::vector<Spring>& springs, Bodies& bodies, const
     for (int r = 0; r < 2; ++r)
       link.inertia[r] =
           inertiaOf(link.direction[r], link.armA, a) + inertiaOf(link.direction[r], link.armB, b);
-    const double stretch = distance - def.length;
-    link.row[0] =
-        SoftRow::of(def.stiffness, def.damping, springShares(def.stiffness, def.damping, link.inertia[0], h),
-                    stretch, rateBefore, h);
+    const double stretch = stretchOf(def, distance);
+    link.row[0] = SoftRow{};
+    if (stretch != 0 || def.slack == 0)
+      link.row[0] =
+          SoftRow::of(def.stiffness, def.damping,
+                      springShares(def.stiffness, def.damping, link.inertia[0], h), stretch, rateBefore, h);
     // How fast the force grows across: its tension by its length.
     const double tight = def.length == 0 ? def.stiffness
                          : stretch > 0   ? def.stiffness * stretch / distance

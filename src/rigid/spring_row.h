@@ -14,6 +14,8 @@
 #pragma once
 #include <algorithm>
 
+#include "rigid/links.h"
+
 namespace smokebox {
 
 /// Of a spring, as long as its stiffness, its masses and the sub-step stay.
@@ -27,12 +29,23 @@ inline double smoothStep(double x) {
   return x * x * (3 - 2 * x);
 }
 
-/// `inertia`: the rate that a unit impulse makes, 1/kg.
-inline SpringShares springShares(double stiffness, double damping, double inertia, double h) {
-  const double squared = h * h * stiffness * inertia, taken = h * damping * inertia;
+/// m; 0 where it is slack.
+inline double stretchOf(const SpringDef& def, double distance) {
+  return std::max(distance - def.length, 0.0) + std::min(distance - (def.length - def.slack), 0.0);
+}
+
+/// Of a spring without damping; `squared`: (w h)^2.
+inline SpringShares sharesOf(double squared) {
   const double even = 1.0 / 12 + (1.0 / 4 - 1.0 / 12) * smoothStep((squared - 0.25) / 0.75);
   const double late = smoothStep((squared - 1) / 3);
-  return {even + late * (1 - even), even * (1 - late), 0.5 + 0.5 * smoothStep((taken - 0.5) / 1.5)};
+  return {even + late * (1 - even), even * (1 - late), 0.5};
+}
+
+/// `inertia`: the rate that a unit impulse makes, 1/kg.
+inline SpringShares springShares(double stiffness, double damping, double inertia, double h) {
+  SpringShares shares = sharesOf(h * h * stiffness * inertia);
+  shares.damping += 0.5 * smoothStep((h * damping * inertia - 0.5) / 1.5);
+  return shares;
 }
 
 /// The impulse at which all agrees: rate + softness impulse + offset = 0.

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "rigid/islands.h"
+#include "rigid/spring_row.h"
 
 namespace smokebox {
 
@@ -45,7 +46,8 @@ void SpringSet::beginStep(Bodies& bodies, double dt, int subSteps) {
   for (int k = 0; k < static_cast<int>(moved_.size()); ++k)
     stale_ |= moved_[k] != 2 && moved_[k] != static_cast<char>(bodies.moves(k));
   if (stale_) layOut(bodies);
-  for (SpringSheet& sheet : sheets_) sheet.beginStep(springs_, bodies, dt / subSteps);
+  for (SpringSheet& sheet : sheets_) sheet.beginStep(springs_, bodies, dt / subSteps, changed_);
+  changed_ = false;
 }
 
 void SpringSet::layOut(const Bodies& bodies) {
@@ -105,7 +107,7 @@ double SpringSet::solve(Bodies& bodies, double h) {
 }
 
 void SpringSet::endStep(Bodies& bodies) {
-  for (SpringSheet& sheet : sheets_) sheet.endStep(bodies, h_);
+  for (SpringSheet& sheet : sheets_) sheet.endStep(bodies);
   if (carrying_) {
     for (Spring& spring : springs_) {
       if (!spring.carried) continue;
@@ -137,7 +139,7 @@ double SpringSet::energy(const Bodies& bodies) const {
   double sum = 0;
   for (int k = 0; k < count(); ++k) {
     if (!springs_[k].there) continue;
-    const double stretch = distance(k, bodies) - springs_[k].def.length;
+    const double stretch = stretchOf(springs_[k].def, distance(k, bodies));
     sum += 0.5 * springs_[k].def.stiffness * stretch * stretch;
   }
   return sum;

@@ -16,8 +16,11 @@ class SpringSet {
   int count() const { return static_cast<int>(springs_.size()); }
   bool isThere(int spring) const { return springs_[spring].there; }
   const SpringDef& def(int spring) const { return springs_[spring].def; }
-  /// Length, stiffness, damping and tear may be changed between steps; not the ends.
-  SpringDef& def(int spring) { return springs_[spring].def; }
+  /// Length, stiffness, damping, slack and tear may be changed between steps; not the ends.
+  SpringDef& def(int spring) {
+    changed_ = true;
+    return springs_[spring].def;
+  }
   /// Where its end in the world is at the end of the next step.
   void moveEnd(int spring, Vec2 to);
   bool empty() const { return there_ == 0; }
@@ -52,6 +55,7 @@ class SpringSet {
   double h_ = 0;  // of the last sub-step, s
   int there_ = 0;
   bool stale_ = false;     // the islands must be laid out anew
+  bool changed_ = false;   // one may be another than in the last step
   bool carrying_ = false;  // an end in the world is on its way
   bool tearing_ = false;   // a spring can tear
 };

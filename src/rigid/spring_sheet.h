@@ -6,9 +6,11 @@
 // iterations (very stiff cloth), a last search along what was found and along the velocities themselves sees
 // to it that the energy does not grow.
 //
-// Sums run in a fixed order, with the two components of a vector as the two lanes that every x86-64 has.
+// What is missing is known to all digits; the search for it, which only has to be 1e-3 of it near, has seven
+// digits. Springs lie in memory as bands (spring_bands.h).
 #pragma once
 #include "rigid/spring_island.h"
+#include "rigid/spring_laws.h"
 
 namespace smokebox {
 
@@ -23,12 +25,13 @@ class SpringSheet {
   /// sheetOf[spring] = number, for all its springs.
   void mark(std::vector<int>& sheetOf, int number) const;
 
-  void beginStep(const std::vector<Spring>& springs, const Bodies& bodies, double h);
+  /// `changed`: a spring may be another than in the last step.
+  void beginStep(const std::vector<Spring>& springs, const Bodies& bodies, double h, bool changed);
   /// `hBefore`: the length of the last sub-step.
   void warmStart(Bodies& bodies, double h, double hBefore);
   /// The largest change of a velocity, m/s.
   double solve(Bodies& bodies);
-  void endStep(const Bodies& bodies, double h);
+  void endStep(const Bodies& bodies);
 
   /// N, of the last sub-step.
   double tension(int spring) const;
@@ -37,43 +40,42 @@ class SpringSheet {
   long iterations() const { return iterations_; }
 
  private:
-  typedef double Pair __attribute__((vector_size(16)));
   struct Link {
-    int spring, a, b;  // a and b: nodes
-    double stiffness, damping, inverseA, inverseB, tension;
-  };
-  // A symmetric matrix in three numbers: xx, xy, yy.
-  struct Matrix {
-    double xx, xy, yy;
+    int spring, a, b, slot;  // a and b: nodes, a < b
+    SpringDef def;           // as of the last step
   };
 
-  void prepare(int slot, const SpringDef& def, const Bodies& bodies, double h);
-  void findForces(int begin, int end, double h, double perSecond);
-  void stiffenAcross(int slot, double h, double perSecond);
-  Pair force(int slot, Pair rate) const;
-  double multiply(const std::vector<Pair>& p, std::vector<Pair>& out) const;
-  void keepEnergy();
+  void findRows();
+  void findRowsOfBand(const SpringBands::Band& band, int begin, int count);
+  void findLooseRows();
+  double residual(double& made);
+  double conjugateGradients(double left, double enough, double scale);
+  double advance(float along);
+  void turn(float keep);
+  void keepEnergy(double scale);
 
-  std::vector<Link> links_;       // in the order of their nodes a
-  std::vector<int> nodeStart_;    // by node: the first link of which it is a; one more at the end
-  std::vector<int> start_, end_;  // a and b again, close together
-  // Impulse on b = -(bias + matrix (vb - va)), by link; and what it is made of: bias = perStretch C + perRate
-  // u0, hardness, and (w h)^2.
-  std::vector<Matrix> matrix_;
-  std::vector<Pair> bias_;
-  std::vector<double> length_, perStretch_, perRate_, hardness_, squared_;
-  std::vector<std::array<int, 2>> slotOf_;  // spring and its slot, in the order of springs
+  std::vector<Link> links_;  // in the order of springs
+  SpringBands bands_;
+  SpringLaws laws_;
+  SpringMatrices matrices_;
+  SpringStretch stretch_;
   // By node.
   std::vector<int> body_;
-  std::vector<char> fresh_;             // nothing is known of its last sub-step
-  std::vector<double> mass_, inverse_;  // 0 for what does not move
-  std::vector<Pair> place_, moved_;     // at the sub-step's start; within the last sub-step
-  std::vector<Pair> impulse_;           // of the springs, in this sub-step
-  std::vector<Pair> biases_;            // that of its springs, with their signs
-  std::vector<Pair> velocity_, rest_, direction_, product_, change_;
-  double h_ = 0, size_ = 0, total_ = 0;  // mean length; mass of what moves
+  std::vector<char> fresh_;                  // nothing is known of its last sub-step
+  std::vector<double> mass_, inverse_;       // 0 for what does not move
+  std::vector<float> share_, inverseShare_;  // of unit_
+  NodeField<double> place_, moved_;          // at the sub-step's start; within the last sub-step
+  NodeField<double> impulse_;                // of the springs, in this sub-step
+  NodeField<double> biases_;                 // of its springs, with their signs
+  NodeField<double> velocity_, rest_;        // before the last solve; the impulses that are missing then
+  NodeField<double> left_;                   // velocities as they were left by the last solve
+  NodeField<double> made_, product_;         // for keepEnergy
+  NodeField<float> missing_, direction_, step_, change_;  // of the conjugate gradients
+  double h_ = 0, hBefore_ = 0;                            // s
+  double size_ = 0, total_ = 0, unit_ = 1;                // mean length; mass of what moves, all and the mean
   long iterations_ = 0;
-  bool free_ = false;  // no node is fixed
+  bool free_ = false;     // no node is fixed
+  bool settled_ = false;  // as long as the velocities are left_
 };
 
 }  // namespace smokebox

@@ -1,0 +1,180 @@
+// The solver of a sheet: conjugate gradients.
+#include <algorithm>
+#include <cmath>
+
+#include "rigid/lanes.h"
+#include "rigid/spring_sheet.h"
+
+namespace smokebox {
+
+namespace {
+
+constexpr int kMostIterations = 40;
+// It stops when the velocities that are still missing are this share of those that the springs make in a
+// sub-step, or this share of a spring's length in a sub-step.
+constexpr double kTolerance = 1e-3, kSmallest = 1e-10;
+
+}  // namespace
+
+/// The impulses that are missing for these velocities; the square of the velocities that they would make, by
+/// mass, and in `made` that of those that the springs make in a sub-step.
+double SpringSheet::residual(double& made) {
+  bands_.multiply(matrices_, nullptr, velocity_, rest_);
+  double *restX = rest_.x(), *restY = rest_.y();
+  const double *impulseX = impulse_.x(), *impulseY = impulse_.y(), *biasX = biases_.x(), *biasY = biases_.y(),
+               *inverses = inverse_.data();
+  Lanes missing{}, springs{};
+  for (int k = 0; k < bands_.nodes(); k += 4) {
+    const Lanes ownX = load(impulseX + k), ownY = load(impulseY + k), inverse = load(inverses + k);
+    const Lanes x = -(unit_ * load(restX + k) + ownX + load(biasX + k)),
+                y = -(unit_ * load(restY + k) + ownY + load(biasY + k));
+    store(restX + k, x);
+    store(restY + k, y);
+    missing += (x * x + y * y) * inverse;
+    springs += (ownX * ownX + ownY * ownY) * inverse;
+  }
+  made = sumOf(springs);
+  return sumOf(missing);
+}
+
+double SpringSheet::advance(float along) {
+  float *missingX = missing_.x(), *missingY = missing_.y(), *changeX = change_.x(), *changeY = change_.y();
+  const float *directionX = direction_.x(), *directionY = direction_.y(), *stepX = step_.x(),
+              *stepY = step_.y(), *inverses = inverseShare_.data();
+  FloatLanes sum{};
+  for (int k = 0; k < bands_.nodes(); k += kLanes) {
+    store(changeX + k, load(changeX + k) + along * load(directionX + k));
+    store(changeY + k, load(changeY + k) + along * load(directionY + k));
+    const FloatLanes x = load(missingX + k) - along * load(stepX + k),
+                     y = load(missingY + k) - along * load(stepY + k);
+    store(missingX + k, x);
+    store(missingY + k, y);
+    sum += (x * x + y * y) * load(inverses + k);
+  }
+  return sumOf(sum);
+}
+
+void SpringSheet::turn(float keep) {
+  const float *missingX = missing_.x(), *missingY = missing_.y(), *inverses = inverseShare_.data();
+  float *directionX = direction_.x(), *directionY = direction_.y();
+  for (int k = 0; k < bands_.nodes(); k += kLanes) {
+    const FloatLanes inverse = load(inverses + k);
+    store(directionX + k, inverse * load(missingX + k) + keep * load(directionX + k));
+    store(directionY + k, inverse * load(missingY + k) + keep * load(directionY + k));
+  }
+}
+
+/// Of (shares of mass + matrices) change = missing, both in units of `scale` and the unit of mass, so that
+/// all numbers are near 1. Returns the square that is left.
+double SpringSheet::conjugateGradients(double left, double enough, double scale) {
+  const double perImpulse = 1 / (unit_ * scale);
+  const double *restX = rest_.x(), *restY = rest_.y();
+  float *missingX = missing_.x(), *missingY = missing_.y();
+#pragma omp simd
+  for (int k = 0; k < bands_.nodes(); ++k) {
+    missingX[k] = static_cast<float>(perImpulse * restX[k]);
+    missingY[k] = static_cast<float>(perImpulse * restY[k]);
+  }
+  bands_.makeField(change_);
+  bands_.makeField(direction_);
+  turn(0);
+  for (int iteration = 0; iteration < kMostIterations && left > enough; ++iteration) {
+    ++iterations_;
+    const double along = left / bands_.multiply(matrices_, share_.data(), direction_, step_);
+    const double next = advance(static_cast<float>(along));
+    turn(static_cast<float>(next / left));
+    left = next;
+  }
+  return left;
+}
+
+double SpringSheet::solve(Bodies& bodies) {
+  const int count = static_cast<int>(body_.size());
+  double *velocityX = velocity_.x(), *velocityY = velocity_.y(), *leftX = left_.x(), *leftY = left_.y();
+  bool same = settled_;
+  for (int k = 0; k < count; ++k) {
+    const Motion& v = bodies.velocity[body_[k]];
+    same = same && v.x == leftX[k] && v.y == leftY[k];
+    velocityX[k] = v.x, velocityY[k] = v.y;
+  }
+  if (same) return 0;
+  double made = 0;
+  const double missing = residual(made);
+  const double small = kSmallest * size_ / h_;
+  const double enough = std::max(kTolerance * kTolerance * made, small * small * total_);
+  if (!(missing > enough)) return 0;
+  const double scale = std::sqrt(missing / total_), units = 1 / (unit_ * scale * scale);
+  if (conjugateGradients(units * missing, units * enough, scale) > units * enough) keepEnergy(scale);
+  const float *changeX = change_.x(), *changeY = change_.y();
+  double meanX = 0, meanY = 0;
+  if (free_) {  // seven digits are not enough for its momentum
+    for (int k = 0; k < count; ++k) meanX += mass_[k] * changeX[k], meanY += mass_[k] * changeY[k];
+    meanX /= total_, meanY /= total_;
+  }
+  double *impulseX = impulse_.x(), *impulseY = impulse_.y();
+  double largest = 0;
+  for (int k = 0; k < count; ++k) {
+    Motion& v = bodies.velocity[body_[k]];
+    const double x = scale * (changeX[k] - meanX), y = scale * (changeY[k] - meanY);
+    v.x += x;
+    v.y += y;
+    leftX[k] = v.x, leftY[k] = v.y;
+    impulseX[k] += mass_[k] * x;
+    impulseY[k] += mass_[k] * y;
+    largest = std::max({largest, std::fabs(x), std::fabs(y)});
+  }
+  settled_ = true;
+  return largest;
+}
+
+/// With v* the velocities without the springs, and g the residual: backward Euler takes energy away if g is
+/// at right angles to v - v* and to v*. Both are brought about by adding a (v - v*) + b v*; what is free has
+/// v* counted from its centre of mass.
+void SpringSheet::keepEnergy(double scale) {
+  const int count = static_cast<int>(body_.size());
+  double *velocityX = velocity_.x(), *velocityY = velocity_.y(), *madeX = made_.x(), *madeY = made_.y();
+  const double *impulseX = impulse_.x(), *impulseY = impulse_.y();
+  float *changeX = change_.x(), *changeY = change_.y();
+  double meanX = 0, meanY = 0;
+  if (free_) {
+    for (int k = 0; k < count; ++k) {
+      meanX += mass_[k] * velocityX[k] - impulseX[k];
+      meanY += mass_[k] * velocityY[k] - impulseY[k];
+    }
+    meanX /= total_, meanY /= total_;
+  }
+  for (int k = 0; k < count; ++k) {
+    const double x = inverse_[k] * impulseX[k], y = inverse_[k] * impulseY[k];
+    madeX[k] = x + scale * changeX[k], madeY[k] = y + scale * changeY[k];
+    const bool moves = inverse_[k] > 0;
+    velocityX[k] = moves ? velocityX[k] - x - meanX : 0;  // it has served: v* from here on
+    velocityY[k] = moves ? velocityY[k] - y - meanY : 0;
+  }
+  auto dot = [&](const NodeField<double>& p, const NodeField<double>& q) {
+    double sum = 0;
+    for (int k = 0; k < count; ++k) sum += p.x()[k] * q.x()[k] + p.y()[k] * q.y()[k];
+    return sum;
+  };
+  // What is still missing, along both.
+  NodeField<double>& without = velocity_;
+  const double perUnit = 1 / unit_;
+  double ra = 0, rb = 0;
+  for (int k = 0; k < count; ++k) {
+    const double x = scale * missing_.x()[k], y = scale * missing_.y()[k];
+    ra += madeX[k] * x + madeY[k] * y;
+    rb += velocityX[k] * x + velocityY[k] * y;
+  }
+  std::vector<double> share(mass_);
+  for (double& each : share) each *= perUnit;
+  const double aa = bands_.multiply(matrices_, share.data(), made_, product_), ab = dot(without, product_);
+  const double bb = bands_.multiply(matrices_, share.data(), without, product_);
+  const double determinant = aa * bb - ab * ab;
+  if (!(determinant > 1e-12 * aa * bb)) return;
+  const double a = (ra * bb - rb * ab) / determinant, b = (rb * aa - ra * ab) / determinant;
+  for (int k = 0; k < count; ++k) {
+    changeX[k] += static_cast<float>((a * madeX[k] + b * velocityX[k]) / scale);
+    changeY[k] += static_cast<float>((a * madeY[k] + b * velocityY[k]) / scale);
+  }
+}
+
+}  // namespace smokebox
