@@ -9,14 +9,6 @@ namespace {
 
 constexpr float kSlack = 1e-4f, kAnything = 1e9f;
 
-inline bool allLanes(const LaneMask& m) {
-  typedef long long Longs __attribute__((vector_size(64), aligned(4), may_alias));
-  const Longs& l = reinterpret_cast<const Longs&>(m);
-  long long all = l[0];
-  for (int k = 1; k < 8; ++k) all &= l[k];
-  return all == -1;
-}
-
 }  // namespace
 
 // Inverse diagonal, kind of each chunk, and the band along solids.

@@ -47,6 +47,15 @@ SMOKEBOX_INLINE float largestLane(const Lanes& v) {
   return m;
 }
 
+/// Are all lanes true?
+SMOKEBOX_INLINE bool allLanes(const LaneMask& m) {
+  typedef long long Longs __attribute__((vector_size(64), aligned(4), may_alias));
+  const Longs& l = reinterpret_cast<const Longs&>(m);
+  long long all = l[0];
+  for (int k = 1; k < 8; ++k) all &= l[k];
+  return all == -1;
+}
+
 /// A bit for each lane that is true.
 SMOKEBOX_INLINE unsigned bitsOf(const LaneMask& m) {
   const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};

@@ -25,12 +25,12 @@ namespace {
 
 // The solve aims this much below the tolerance, since the velocity is rounded after it.
 constexpr double kSafety = 0.7;
-// In float32 the running residual parts from the true one by this share of what it was, for each cell along a
-// side: the solution is larger than its differences by as much.
-constexpr double kRounding = 1.2e-7;
+// In float32 the running residual parts from the true one by about this share of the solution's largest
+// value.
+constexpr double kRounding = 2.5e-7;
 // From a start this far above the target a W-cycle saves iterations. A step of a flow starts nearer: there it
 // saves none.
-constexpr double kFar = 1e4;
+constexpr double kFar = 3e4;
 
 double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
@@ -41,6 +41,7 @@ struct PressureSolver::Impl {
       : pool(threads), multigrid(boundary, threads), flux(boundary, threads) {
     solution = direction = increment = multigrid.finest().x;
     rows.resize(boundary.grid.ny);
+    advances.resize(boundary.grid.ny);
     overlaps.resize(boundary.grid.ny);
     regions.rebuild(boundary, multigrid.finest());
   }
@@ -50,16 +51,17 @@ struct PressureSolver::Impl {
     regions.rebuild(boundary, multigrid.finest());
     const std::size_t size = static_cast<std::size_t>(multigrid.finest().extrasBegin);
     rows.resize(boundary.grid.ny);
+    advances.resize(boundary.grid.ny);
     overlaps.resize(boundary.grid.ny);
     for (Floats* f : {&solution, &direction, &increment}) f->assign(size, 0);
     predictable = false;
   }
 
-  /// The net flux into b, spread over sealed regions where it does not cancel. m/s.
+  /// The net flux that was measured into b, spread over sealed regions where it does not cancel. m/s.
   struct Source {
     double flux = 0, speed = 0, compression = 0;
   };
-  Source source(const Boundary& boundary, const Field& u, const Field& v);
+  Source source(const Boundary& boundary, const PressureFlux::Largest& measured);
 
   /// Conjugate gradients for the right-hand side in b, until the largest residual is at most `target`; the
   /// solution is left in `solution`. Returns the number of iterations. `onward`: b is what the last solve has
@@ -74,14 +76,17 @@ struct PressureSolver::Impl {
   /// direction = x + beta direction; returns its product with A direction.
   double advanceDirection(float beta);
   /// solution += alpha direction (from 0 if it is the first), b -= alpha A direction (computed again: cheaper
-  /// than to keep it); returns the largest |b|. b is left alone if this is the last step.
-  double advanceSolution(float alpha, bool first, bool last);
+  /// than to keep it). b is left alone if this is the last step.
+  struct Advance {
+    double residual = 0, solution = 0;  // largest |b|, and largest |solution| if it is the first
+  };
+  Advance advanceSolution(float alpha, bool first, bool last);
   /// Takes the mean off a solution in sealed regions, and copies it beyond the sides.
   void centre(Floats& values);
-  /// phi += gain x.
-  void add(const Floats& x, Field& phi, float gain);
-  /// increment += solution, copies beyond the sides too.
-  void remember();
+  /// phi += gain x, in row j.
+  void addToRow(const Floats& x, Field& phi, float gain, int j) const;
+  /// increment += solution in row j, copies beyond the sides too.
+  void rememberRow(int j);
 
   ThreadPool& pool;
   Multigrid multigrid;
@@ -94,15 +99,15 @@ struct PressureSolver::Impl {
   Floats increment;
   bool predictable = false;
   std::vector<double> rows, sums;
+  std::vector<Advance> advances;
   std::vector<Overlap> overlaps;
 };
 
-PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& boundary, const Field& u,
-                                                          const Field& v) {
+PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& boundary,
+                                                          const PressureFlux::Largest& measured) {
   Level& level = multigrid.finest();
-  const PressureFlux::Largest largest = flux.measure(boundary, level, u, v, level.b);
-  Source result{largest.flux, largest.speed, 0};
-  if (!regions.anySealed() || !std::isfinite(largest.flux)) return result;
+  Source result{measured.flux, measured.speed, 0};
+  if (!regions.anySealed() || !std::isfinite(measured.flux)) return result;
 
   const auto& all = regions.regions();
   sums.assign(all.size(), 0);
@@ -175,28 +180,36 @@ double PressureSolver::Impl::advanceDirection(float beta) {
   return total;
 }
 
-double PressureSolver::Impl::advanceSolution(float alpha, bool first, bool last) {
+PressureSolver::Impl::Advance PressureSolver::Impl::advanceSolution(float alpha, bool first, bool last) {
   Level& level = multigrid.finest();
   forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
     float *x = solution.data(), *r = level.b.data();
     const float* p = direction.data();
     const std::uint8_t* kind = level.chunkRow(j);
-    Lanes m = {};
+    Lanes residual = {}, size = {};
     for (int c = 0; c < level.chunks; ++c) {
       if (kind[c] & kEmpty) continue;
       const std::ptrdiff_t i = level.at(c * kLanes, j);
       const Lanes step = alpha * load(p + i);
-      store(x + i, first ? step : load(x + i) + step);
+      if (first) {
+        store(x + i, step);
+        size = multigrid::larger(multigrid::magnitude(step), size);
+      } else {
+        store(x + i, load(x + i) + step);
+      }
       if (last) continue;
       const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
       store(r + i, value);
-      m = multigrid::larger(multigrid::magnitude(value), m);
+      residual = multigrid::larger(multigrid::magnitude(value), residual);
     }
-    rows[j] = multigrid::largestLane(m);
+    advances[j] = {multigrid::largestLane(residual), multigrid::largestLane(size)};
   });
-  double largest = 0;
-  for (double r : rows) largest = largerOf(r, largest);
-  return largest;
+  Advance most;
+  for (const Advance& row : advances) {
+    most.residual = largerOf(row.residual, most.residual);
+    most.solution = largerOf(row.solution, most.solution);
+  }
+  return most;
 }
 
 void PressureSolver::Impl::centre(Floats& values) {
@@ -218,23 +231,25 @@ void PressureSolver::Impl::centre(Floats& values) {
   level.wrapRows(values);
 }
 
-void PressureSolver::Impl::remember() {
-  pool.blocks(0, static_cast<int>(increment.size()), 1 << 14, [&](int begin, int end) {
-    float* sum = increment.data();
-    const float* x = solution.data();
+void PressureSolver::Impl::rememberRow(int j) {
+  const Level& level = multigrid.finest();
+  const auto add = [&](int row) {
+    float* sum = level.row(increment, row) - 1;
+    const float* x = level.row(solution, row) - 1;
 #pragma omp simd
-    for (int i = begin; i < end; ++i) sum[i] += x[i];
-  });
+    for (int i = 0; i < level.nx + 2; ++i) sum[i] += x[i];
+  };
+  add(j);
+  if (level.periodicY && j == 0) add(-1);
+  if (level.periodicY && j == level.ny - 1) add(level.ny);
 }
 
-void PressureSolver::Impl::add(const Floats& values, Field& phi, float gain) {
+void PressureSolver::Impl::addToRow(const Floats& values, Field& phi, float gain, int j) const {
   const Level& level = multigrid.finest();
-  forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
-    float* target = phi.row(j);
-    const float* x = level.row(values, j);
+  float* target = phi.row(j);
+  const float* x = level.row(values, j);
 #pragma omp simd
-    for (int i = 0; i < level.nx; ++i) target[i] += gain * x[i];
-  });
+  for (int i = 0; i < level.nx; ++i) target[i] += gain * x[i];
 }
 
 PressureSolver::Impl::Overlap PressureSolver::Impl::overlapOfDirection() {
@@ -259,11 +274,7 @@ PressureSolver::Impl::Overlap PressureSolver::Impl::overlapOfDirection() {
 }
 
 int PressureSolver::Impl::solve(double start, double target, int maxIterations, bool onward) {
-  // Where rounding would reach the target, the residual is computed anew on half the way.
-  const Level& level = multigrid.finest();
-  const double rounding = start * kRounding * std::max(level.nx, level.ny);
-  const double enough = rounding < 0.5 * target ? target : std::max(target, std::sqrt(start * target));
-  double product = 0;
+  double product = 0, enough = target;
   if (!onward) far = start > kFar * target && target > 0;
   int iteration = 0;
   while (iteration < maxIterations) {
@@ -279,9 +290,12 @@ int PressureSolver::Impl::solve(double start, double target, int maxIterations, 
     if (!(curvature > 0)) break;
     product = next;
     ++iteration;
-    const double residual = advanceSolution(static_cast<float>(slope / curvature), iteration == 1,
-                                            target == 0 && iteration == maxIterations);
-    if (!(residual > enough)) break;
+    const Advance done = advanceSolution(static_cast<float>(slope / curvature), iteration == 1,
+                                         target == 0 && iteration == maxIterations);
+    // Where rounding would reach the target, the residual is computed anew before.
+    if (iteration == 1 && kRounding * done.solution > 0.3 * target)
+      enough = std::max(target, 4 * kRounding * done.solution);
+    if (!(done.residual > enough)) break;
   }
   if (iteration == 0) std::fill(solution.begin(), solution.end(), 0.0f);
   centre(solution);
@@ -298,19 +312,20 @@ void PressureSolver::rebuild(const Boundary& boundary) { impl_->rebuild(boundary
 PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& u, Field& v, Field& phi,
                                                double smallestSpeed, double tolerance, int maxIterations) {
   Impl& s = *impl_;
-  const Level& level = s.multigrid.finest();
+  Level& level = s.multigrid.finest();
   s.flux.closeFaces(boundary, level, u, v);
+  PressureFlux::Largest measured;
   if (s.predictable) {
-    s.flux.subtractGradient(level, s.increment, u, v);
-    s.add(s.increment, phi, 1);
+    measured = s.flux.subtractAndMeasure(boundary, level, s.increment, u, v, level.b, [](int) {});
   } else {
     std::fill(s.increment.begin(), s.increment.end(), 0.0f);
+    measured = s.flux.measure(boundary, level, u, v, level.b);
   }
   s.predictable = true;
   Result result;
   double before = std::numeric_limits<double>::infinity();
   while (true) {
-    const Impl::Source source = s.source(boundary, u, v);
+    const Impl::Source source = s.source(boundary, measured);
     const double speed = largerOf(source.speed, smallestSpeed);
     result.divergence = source.flux > 0 ? source.flux / speed : source.flux;
     result.compression = source.compression / boundary.grid.h;
@@ -327,10 +342,10 @@ PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& 
                              result.iterations > 0);
     if (done == 0) break;
     result.iterations += done;
-    s.flux.subtractGradient(level, s.solution, u, v);
-    s.add(s.solution, phi, 1);
-    s.remember();
+    measured = s.flux.subtractAndMeasure(boundary, level, s.solution, u, v, level.b,
+                                         [&](int j) { s.rememberRow(j); });
   }
+  forRows(s.pool, boundary.grid.cells(), 0, level.ny, [&](int j) { s.addToRow(s.increment, phi, 1, j); });
   return result;
 }
 
@@ -339,9 +354,9 @@ void PressureSolver::forget() { impl_->predictable = false; }
 void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v, int cycles, Field* phi,
                                     double gain) {
   Impl& s = *impl_;
-  const Level& level = s.multigrid.finest();
+  Level& level = s.multigrid.finest();
   s.flux.closeFaces(boundary, level, u, v);
-  const Impl::Source source = s.source(boundary, u, v);
+  const Impl::Source source = s.source(boundary, s.flux.measure(boundary, level, u, v, level.b));
   if (!(source.flux > 0) || !std::isfinite(source.flux)) return;
   Floats& increment = cycles > 0 ? s.solution : s.multigrid.finest().x;
   if (cycles > 0) {
@@ -350,14 +365,15 @@ void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v
     s.multigrid.cycle();
     s.centre(increment);
   }
-  s.flux.subtractGradient(level, increment, u, v);
-  if (phi) s.add(increment, *phi, static_cast<float>(gain));
+  s.flux.subtractGradient(level, increment, u, v, [&](int j) {
+    if (phi) s.addToRow(increment, *phi, static_cast<float>(gain), j);
+  });
 }
 
 std::size_t PressureSolver::bytes() const {
   const Impl& s = *impl_;
   return s.multigrid.bytes() + s.regions.bytes() + 3 * s.solution.capacity() * sizeof(float) +
-         2 * (s.rows.capacity() + s.overlaps.capacity()) * sizeof(double);
+         2 * (s.rows.capacity() + s.advances.capacity() + s.overlaps.capacity()) * sizeof(double);
 }
 
 }  // namespace smokebox

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fluid/multigrid.h"
 #include "fluid/multigrid_kernels.h"
 
 namespace smokebox {
 
+using multigrid::allLanes;
 using multigrid::kEmpty;
 using multigrid::kLanes;
 using multigrid::kRegular;
+using multigrid::LaneMask;
 using multigrid::Lanes;
 using multigrid::load;
 using multigrid::store;
@@ -33,6 +34,14 @@ SMOKEBOX_INLINE Doubles doublesAt(const float* p) {
 SMOKEBOX_INLINE Doubles sideFlux(const float* open, const float* velocity, const float* wall) {
   const Doubles share = doublesAt(open);
   return share * doublesAt(velocity) + (1.0 - share) * doublesAt(wall);
+}
+
+/// Are all faces of 16 cells either open or closed?
+SMOKEBOX_INLINE bool wholeFaces(const float* ax, const float* ay, const float* ayAbove) {
+  const auto whole = [](const Lanes& open) __attribute__((always_inline)) {
+    return (open == 0.0f) | (open == 1.0f);
+  };
+  return allLanes((whole(load(ax)) & whole(load(ax + 1))) & (whole(load(ay)) & whole(load(ayAbove))));
 }
 
 }  // namespace
@@ -72,56 +81,11 @@ void PressureFlux::closeFaces(const Boundary& boundary, const multigrid::Level& 
 
 PressureFlux::Largest PressureFlux::measure(const Boundary& boundary, const multigrid::Level& links,
                                             const Field& u, const Field& v, multigrid::Floats& b) {
-  const int nx = links.nx, ny = links.ny;
-  forRows(pool_, boundary.grid.cells(), 0, ny, [&](int j) {
-    const float *ax = links.row(links.ax, j), *ay = links.row(links.ay, j), *ayAbove = ay + links.stride;
-    const float* id = links.row(links.id, j);
-    const float *ur = u.row(j), *vr = v.row(j), *va = v.row(j + 1);
-    const float* wallU = boundary.wallU.row(j);
-    const float* wallV = boundary.wallV.row(j);
-    const float* wallVAbove = boundary.wallV.row(links.periodicY && j == ny - 1 ? 0 : j + 1);
-    const std::uint8_t* kind = links.chunkRow(j);
-    float* out = links.row(b, j);
-    Lanes flux = {}, speed = {};
-    for (int c = 0; c < links.chunks; ++c) {
-      const int first = c * kLanes;
-      if (kind[c] & kRegular) {
-        // Neighbouring velocities are close: their differences are as good as exact in float32.
-        const Lanes left = load(ur + first), below = load(vr + first);
-        const Lanes net = (left - load(ur + first + 1)) + (below - load(va + first));
-        store(out + first, net);
-        flux = multigrid::larger(multigrid::magnitude(net), flux);
-        speed = multigrid::larger(multigrid::magnitude(left), speed);
-        speed = multigrid::larger(multigrid::magnitude(below), speed);
-        continue;
-      }
-      if (kind[c] & kEmpty) continue;
-      // The row may end within these 16 cells: what lies beyond has no links, and counts as 0.
-      alignas(64) float net[kLanes], right[kLanes];
-      for (int k = 0; k < kLanes; ++k) right[k] = wallU[first + k + 1];
-      if (links.periodicX && first + kLanes >= nx) right[nx - 1 - first] = wallU[0];
-      for (int k = 0; k < kLanes; k += kHalf) {
-        const int i = first + k;
-        const Doubles sum =
-            (sideFlux(ax + i, ur + i, wallU + i) - sideFlux(ax + i + 1, ur + i + 1, right + k)) +
-            (sideFlux(ay + i, vr + i, wallV + i) - sideFlux(ayAbove + i, va + i, wallVAbove + i));
-        *reinterpret_cast<HalfChunk*>(net + k) = __builtin_convertvector(sum, HalfChunk);
-      }
-      const Lanes zero = {}, value = load(id + first) > zero ? load(net) : zero;
-      const Lanes left = load(ax + first) > zero ? load(ur + first) : zero,
-                  below = load(ay + first) > zero ? load(vr + first) : zero;
-      store(out + first, value);
-      flux = multigrid::larger(multigrid::magnitude(value), flux);
-      speed = multigrid::larger(multigrid::magnitude(left), speed);
-      speed = multigrid::larger(multigrid::magnitude(below), speed);
-    }
-    double sideSpeed = 0;
-    if (ax[nx] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), sideSpeed);
-    if (j == ny - 1)
-      for (int i = 0; i < nx; ++i)
-        if (ayAbove[i] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(va[i])), sideSpeed);
-    rows_[j] = {multigrid::largestLane(flux), largerOf(multigrid::largestLane(speed), sideSpeed)};
-  });
+  forRows(pool_, boundary.grid.cells(), 0, links.ny, [&](int j) { measureRow(boundary, links, u, v, b, j); });
+  return largest();
+}
+
+PressureFlux::Largest PressureFlux::largest() const {
   Largest largest;
   for (const Largest& row : rows_) {
     if (std::isnan(row.flux) || std::isnan(row.speed)) return {row.flux + row.speed, row.flux + row.speed};
@@ -131,42 +95,98 @@ PressureFlux::Largest PressureFlux::measure(const Boundary& boundary, const mult
   return largest;
 }
 
-void PressureFlux::subtractGradient(const multigrid::Level& links, const multigrid::Floats& phi, Field& u,
-                                    Field& v) {
+void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& links, const Field& u,
+                              const Field& v, multigrid::Floats& b, int j) {
   const int nx = links.nx, ny = links.ny;
-  const auto below = [&](int j, int first, int last) {
-    const float* open = links.row(links.ay, j);
-    const float *here = links.row(phi, j), *there = links.row(phi, j - 1);
-    float* velocity = v.row(j);
-    for (int i = first; i < last; ++i)
-      velocity[i] = open[i] > 0 ? velocity[i] - (here[i] - there[i]) : velocity[i];
-  };
-  forRows(pool_, static_cast<long>(nx) * ny, 0, ny, [&](int j) {
-    const float* open = links.row(links.ax, j);
-    const float* here = links.row(phi, j);
-    const std::ptrdiff_t down = links.stride;
-    float *ur = u.row(j), *vr = v.row(j);
-    const std::uint8_t* kind = links.chunkRow(j);
-    for (int c = 0; c < links.chunks; ++c) {
-      const int first = c * kLanes, last = std::min(first + kLanes, nx);
-      if (kind[c] & kEmpty) continue;
-      if (kind[c] & kRegular) {
-        const Lanes value = load(here + first);
-        store(ur + first, load(ur + first) - (value - load(here + first - 1)));
-        store(vr + first, load(vr + first) - (value - load(here + first - down)));
-        continue;
+  const float *ax = links.row(links.ax, j), *ay = links.row(links.ay, j), *ayAbove = ay + links.stride;
+  const float* id = links.row(links.id, j);
+  const float *ur = u.row(j), *vr = v.row(j), *va = v.row(j + 1);
+  const float* wallU = boundary.wallU.row(j);
+  const float* wallV = boundary.wallV.row(j);
+  const float* wallVAbove = boundary.wallV.row(links.periodicY && j == ny - 1 ? 0 : j + 1);
+  const std::uint8_t* kind = links.chunkRow(j);
+  float* out = links.row(b, j);
+  const Lanes zero = {};
+  Lanes flux = {}, speed = {};
+  for (int c = 0; c < links.chunks; ++c) {
+    const int first = c * kLanes;
+    if (kind[c] & kEmpty) continue;
+    const bool regular = kind[c] & kRegular;
+    Lanes net, left = load(ur + first), below = load(vr + first);
+    if (regular || wholeFaces(ax + first, ay + first, ayAbove + first)) {
+      // Neighbouring velocities are close: their differences are as good as exact in float32. Closed faces
+      // hold the wall's.
+      net = (left - load(ur + first + 1)) + (below - load(va + first));
+    } else {
+      // The row may end within these 16 cells: what lies beyond has no links, and counts as 0.
+      alignas(64) float sums[kLanes], right[kLanes];
+      for (int k = 0; k < kLanes; ++k) right[k] = wallU[first + k + 1];
+      if (links.periodicX && first + kLanes >= nx) right[nx - 1 - first] = wallU[0];
+      for (int k = 0; k < kLanes; k += kHalf) {
+        const int i = first + k;
+        const Doubles sum =
+            (sideFlux(ax + i, ur + i, wallU + i) - sideFlux(ax + i + 1, ur + i + 1, right + k)) +
+            (sideFlux(ay + i, vr + i, wallV + i) - sideFlux(ayAbove + i, va + i, wallVAbove + i));
+        *reinterpret_cast<HalfChunk*>(sums + k) = __builtin_convertvector(sum, HalfChunk);
       }
-      for (int i = first; i < last; ++i) ur[i] = open[i] > 0 ? ur[i] - (here[i] - here[i - 1]) : ur[i];
-      below(j, first, last);
+      net = load(sums);
     }
-    if (open[nx] > 0) ur[nx] -= here[nx] - here[nx - 1];
-  });
+    if (!regular) {
+      net = load(id + first) > zero ? net : zero;
+      left = load(ax + first) > zero ? left : zero;
+      below = load(ay + first) > zero ? below : zero;
+    }
+    store(out + first, net);
+    flux = multigrid::larger(multigrid::magnitude(net), flux);
+    speed = multigrid::larger(multigrid::magnitude(left), speed);
+    speed = multigrid::larger(multigrid::magnitude(below), speed);
+  }
+  double sideSpeed = 0;
+  if (ax[nx] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), sideSpeed);
+  if (j == ny - 1)
+    for (int i = 0; i < nx; ++i)
+      if (ayAbove[i] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(va[i])), sideSpeed);
+  rows_[j] = {multigrid::largestLane(flux), largerOf(multigrid::largestLane(speed), sideSpeed)};
+}
+
+void PressureFlux::subtractFromRow(const multigrid::Level& links, const multigrid::Floats& phi, Field& u,
+                                   Field& v, int j) {
+  const int nx = links.nx, ny = links.ny;
+  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const auto subtract = [](float* velocity, const float* open, const float* here, std::ptrdiff_t back,
+                           const LaneMask& inside) __attribute__((always_inline)) {
+    const Lanes old = load(velocity), zero = {};
+    store(velocity, (load(open) > zero) & inside ? old - (load(here) - load(here - back)) : old);
+  };
+  const float* open = links.row(links.ax, j);
+  const float* openBelow = links.row(links.ay, j);
+  const float* here = links.row(phi, j);
+  float *ur = u.row(j), *vr = v.row(j);
+  const std::uint8_t* kind = links.chunkRow(j);
+  for (int c = 0; c < links.chunks; ++c) {
+    const int first = c * kLanes;
+    if (kind[c] & kEmpty) continue;
+    if (kind[c] & kRegular) {
+      const Lanes value = load(here + first);
+      store(ur + first, load(ur + first) - (value - load(here + first - 1)));
+      store(vr + first, load(vr + first) - (value - load(here + first - links.stride)));
+      continue;
+    }
+    const LaneMask inside = place < nx - first;
+    subtract(ur + first, open + first, here + first, 1, inside);
+    subtract(vr + first, openBelow + first, here + first, links.stride, inside);
+  }
   if (links.periodicX)
-    for (int j = 0; j < ny; ++j) u(nx, j) = u(0, j);
-  if (links.periodicY)
-    std::copy_n(v.row(0), nx, v.row(ny));
-  else
-    below(ny, 0, nx);
+    ur[nx] = ur[0];
+  else if (open[nx] > 0)
+    ur[nx] -= here[nx] - here[nx - 1];
+  if (links.periodicY) {
+    if (j == 0) std::copy_n(vr, nx, v.row(ny));
+  } else if (j == ny - 1) {
+    float* top = v.row(ny);
+    const float *openTop = links.row(links.ay, ny), *beyond = links.row(phi, ny);
+    for (int i = 0; i < nx; ++i) top[i] = openTop[i] > 0 ? top[i] - (beyond[i] - here[i]) : top[i];
+  }
 }
 
 }  // namespace smokebox

@@ -4,7 +4,7 @@
 
 #include "base/threads.h"
 #include "fluid/boundary.h"
-#include "fluid/multigrid_level.h"
+#include "fluid/multigrid.h"
 
 namespace smokebox {
 
@@ -15,19 +15,64 @@ class PressureFlux {
   /// Sets closed faces to the wall's velocity, and the last faces of periodic sides to the first.
   void closeFaces(const Boundary& boundary, const multigrid::Level& links, Field& u, Field& v);
 
-  /// b = minus the net flux out of each cell (0 in cells without an open face): float64 inside, in m/s.
+  /// b = minus the net flux out of each cell (0 in cells without an open face): float64 inside where faces
+  /// are open in part, in m/s.
   struct Largest {
     double flux = 0, speed = 0;  // of any cell; |u|, |v| on open faces. A NaN anywhere gives a NaN.
   };
   Largest measure(const Boundary& boundary, const multigrid::Level& links, const Field& u, const Field& v,
                   multigrid::Floats& b);
 
-  /// u -= grad phi on open faces. phi: on the finest level's grid, copies beyond the sides in place.
-  void subtractGradient(const multigrid::Level& links, const multigrid::Floats& phi, Field& u, Field& v);
+  /// u -= grad phi on open faces. phi: on the finest level's grid, copies beyond the sides in place. also(j)
+  /// is called for each row.
+  template <class Also>
+  void subtractGradient(const multigrid::Level& links, const multigrid::Floats& phi, Field& u, Field& v,
+                        Also&& also);
+
+  /// Both in one pass, as far as rows go one after the other.
+  template <class Also>
+  Largest subtractAndMeasure(const Boundary& boundary, const multigrid::Level& links,
+                             const multigrid::Floats& phi, Field& u, Field& v, multigrid::Floats& b,
+                             Also&& also);
 
  private:
+  /// The lower and left faces of row j, and those of the last sides beside it.
+  static void subtractFromRow(const multigrid::Level& links, const multigrid::Floats& phi, Field& u, Field& v,
+                              int j);
+  void measureRow(const Boundary& boundary, const multigrid::Level& links, const Field& u, const Field& v,
+                  multigrid::Floats& b, int j);
+  Largest largest() const;
+
   ThreadPool& pool_;
   std::vector<Largest> rows_;
 };
+
+template <class Also>
+void PressureFlux::subtractGradient(const multigrid::Level& links, const multigrid::Floats& phi, Field& u,
+                                    Field& v, Also&& also) {
+  forRows(pool_, static_cast<long>(links.nx) * links.ny, 0, links.ny, [&](int j) {
+    subtractFromRow(links, phi, u, v, j);
+    also(j);
+  });
+}
+
+template <class Also>
+PressureFlux::Largest PressureFlux::subtractAndMeasure(const Boundary& boundary,
+                                                       const multigrid::Level& links,
+                                                       const multigrid::Floats& phi, Field& u, Field& v,
+                                                       multigrid::Floats& b, Also&& also) {
+  if (pool_.threads() > 1) {
+    subtractGradient(links, phi, u, v, also);
+    return measure(boundary, links, u, v, b);
+  }
+  for (int j = 0; j <= links.ny; ++j) {
+    if (j < links.ny) {
+      subtractFromRow(links, phi, u, v, j);
+      also(j);
+    }
+    if (j > 0) measureRow(boundary, links, u, v, b, j - 1);
+  }
+  return largest();
+}
 
 }  // namespace smokebox
