@@ -11,6 +11,7 @@ struct ContactPoint {
   double gap = 0;               // m, below 0: overlap; for the bodies' places when the contact was found
   double massN = 0, massT = 0;  // effective masses along the normal and the tangent, kg
   double impulseN = 0, impulseT = 0;  // N s of a sub-step
+  double allowed = 0;                 // speed at which the gap may close in a sub-step, m/s
   std::uint32_t feature = 0;
 };
 
@@ -24,6 +25,8 @@ struct Contact {
   double approach = 0;  // fastest at which its points met in this step, m/s
   bool struck = false;  // had an impact in this sub-step
   double total = 0;     // N s along the normal in this step, impacts too
+  double response[3] = {0, 0,
+                        0};  // of the points' parting speeds to impulses: 0 to 0, each to the other, 1 to 1
   ContactPoint points[2];
 };
 

@@ -10,7 +10,7 @@ namespace {
 using Lanes = ContactBlocks::Lanes;
 constexpr int kColours = 64;
 // So few contacts would leave most lanes empty: they are solved one by one.
-constexpr int kFew = 12;
+constexpr int kFew = 24;
 
 struct Motions {
   Lanes x, y, turn;

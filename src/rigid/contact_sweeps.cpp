@@ -17,7 +17,13 @@ void setMasses(const Bodies& bodies, Contact& contact) {
     };
     p.massN = massAlong(contact.normal);
     p.massT = massAlong(tangent);
+    contact.response[2 * k] = p.massN > 0 ? 1 / p.massN : 0;
   }
+  if (contact.count != 2) return;
+  const ContactPoint &p = contact.points[0], &q = contact.points[1];
+  const Vec2 n = contact.normal;
+  contact.response[1] = a.mass + b.mass + a.inertia * cross(p.armA, n) * cross(q.armA, n) +
+                        b.inertia * cross(p.armB, n) * cross(q.armB, n);
 }
 
 double partingSpeed(const Bodies& bodies, const Contact& contact, const ContactPoint& point) {
@@ -58,60 +64,70 @@ void solveBoth(const double k[3], const double speed[2], double impulse[2]) {
 
 namespace {
 
-/// What impulses of 1 at a contact's points make of their parting speeds. False: the two are at one place, or
-/// there is only one.
-bool responses(const Bodies& bodies, const Contact& contact, double k[3]) {
-  const ContactPoint &p = contact.points[0], &q = contact.points[1];
-  if (contact.count != 2 || !(p.massN > 0) || !(q.massN > 0)) return false;
-  const InverseMass a = bodies.inverse[contact.a], b = bodies.inverse[contact.b];
-  const Vec2 n = contact.normal;
-  k[0] = 1 / p.massN;
-  k[1] = a.mass + b.mass + a.inertia * cross(p.armA, n) * cross(q.armA, n) +
-         b.inertia * cross(p.armB, n) * cross(q.armB, n);
-  k[2] = 1 / q.massN;
-  return k[0] * k[2] - k[1] * k[1] > 1e-6 * k[0] * k[2];
+/// Two points at one place are solved one after the other.
+bool areTwo(const Contact& contact) {
+  const double k0 = contact.response[0], k1 = contact.response[1], k2 = contact.response[2];
+  return contact.count == 2 && k0 > 0 && k2 > 0 && k0 * k2 - k1 * k1 > 1e-6 * k0 * k2;
 }
 
 }  // namespace
 
-double solve(Bodies& bodies, std::vector<Contact>& contacts, double h) {
+void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h) {
+  for (Contact& contact : contacts)
+    for (int k = 0; k < contact.count; ++k) {
+      ContactPoint& p = contact.points[k];
+      p.allowed = std::max(p.gap + gapMoved(bodies, contact, p), 0.0) / h;
+    }
+}
+
+double solve(Bodies& bodies, std::vector<Contact>& contacts) {
   double largest = 0;
   for (Contact& contact : contacts) {
-    double lacks[2] = {0, 0};
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactPoint& p = contact.points[k];
-      const double gap = p.gap + gapMoved(bodies, contact, p);
-      lacks[k] = partingSpeed(bodies, contact, p) + std::max(gap, 0.0) / h;
-    }
-    double total[2] = {0, 0}, response[3];
-    const bool both = responses(bodies, contact, response);
-    if (both) {
-      const double before[2] = {contact.points[0].impulseN, contact.points[1].impulseN};
-      const double free[2] = {lacks[0] - response[0] * before[0] - response[1] * before[1],
-                              lacks[1] - response[1] * before[0] - response[2] * before[1]};
-      solveBoth(response, free, total);
-    }
-    for (int k = 0; k < contact.count; ++k) {
-      ContactPoint& p = contact.points[k];
-      if (!both) {
-        if (k == 1)
-          lacks[1] =
-              partingSpeed(bodies, contact, p) + std::max(p.gap + gapMoved(bodies, contact, p), 0.0) / h;
-        total[k] = std::max(p.impulseN - p.massN * lacks[k], 0.0);
+    const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
+    Motion va = bodies.velocity[contact.a], vb = bodies.velocity[contact.b];
+    const Vec2 n = contact.normal, t = perpendicular(n);
+    auto speed = [&](Vec2 along, const ContactPoint& p) {
+      return along.x * (vb.x - va.x) + along.y * (vb.y - va.y) + vb.turn * cross(p.armB, along) -
+             va.turn * cross(p.armA, along);
+    };
+    auto push = [&](Vec2 along, const ContactPoint& p, double impulse) {
+      va.x -= ma.mass * along.x * impulse;
+      va.y -= ma.mass * along.y * impulse;
+      va.turn -= ma.inertia * cross(p.armA, along) * impulse;
+      vb.x += mb.mass * along.x * impulse;
+      vb.y += mb.mass * along.y * impulse;
+      vb.turn += mb.inertia * cross(p.armB, along) * impulse;
+    };
+    auto change = [&](ContactPoint& p, double total) {
+      const double by = total - p.impulseN;
+      p.impulseN = total;
+      push(n, p, by);
+      if (p.massN > 0) largest = std::max(largest, std::abs(by) / p.massN);
+    };
+    if (areTwo(contact)) {
+      ContactPoint &p = contact.points[0], &q = contact.points[1];
+      const double* k = contact.response;
+      const double free[2] = {speed(n, p) + p.allowed - k[0] * p.impulseN - k[1] * q.impulseN,
+                              speed(n, q) + q.allowed - k[1] * p.impulseN - k[2] * q.impulseN};
+      double total[2];
+      solveBoth(k, free, total);
+      change(p, total[0]);
+      change(q, total[1]);
+    } else {
+      for (int k = 0; k < contact.count; ++k) {
+        ContactPoint& p = contact.points[k];
+        change(p, std::max(p.impulseN - p.massN * (speed(n, p) + p.allowed), 0.0));
       }
-      const double change = total[k] - p.impulseN;
-      p.impulseN = total[k];
-      pushApart(bodies, contact, p, change, 0);
-      if (p.massN > 0) largest = std::max(largest, std::abs(change) / p.massN);
     }
     for (int k = 0; k < contact.count; ++k) {
       ContactPoint& p = contact.points[k];
-      const Vec2 slip = bodies.velocityAt(contact.b, p.armB) - bodies.velocityAt(contact.a, p.armA);
-      const double vt = dot(perpendicular(contact.normal), slip), most = contact.friction * p.impulseN;
-      const double tangential = std::clamp(p.impulseT - p.massT * vt, -most, most);
-      pushApart(bodies, contact, p, 0, tangential - p.impulseT);
+      const double most = contact.friction * p.impulseN;
+      const double tangential = std::clamp(p.impulseT - p.massT * speed(t, p), -most, most);
+      push(t, p, tangential - p.impulseT);
       p.impulseT = tangential;
     }
+    bodies.velocity[contact.a] = va;
+    bodies.velocity[contact.b] = vb;
   }
   return largest;
 }
@@ -134,12 +150,12 @@ void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, doub
       shift(contact.a, p.armA, -1);
       shift(contact.b, p.armB, 1);
     };
-    double lacks[2] = {0, 0}, response[3];
+    double lacks[2] = {0, 0};
     for (int k = 0; k < contact.count; ++k) lacks[k] = lacking(contact.points[k]);
     if (lacks[0] >= 0 && lacks[1] >= 0) continue;
-    if (responses(bodies, contact, response)) {
+    if (areTwo(contact)) {
       double impulse[2];
-      solveBoth(response, lacks, impulse);
+      solveBoth(contact.response, lacks, impulse);
       for (int k = 0; k < 2; ++k)
         if (impulse[k] > 0) push(contact.points[k], impulse[k]);
       continue;

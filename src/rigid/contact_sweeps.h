@@ -23,8 +23,10 @@ void pushApart(Bodies& bodies, const Contact& contact, const ContactPoint& point
 void solveBoth(const double k[3], const double speed[2], double impulse[2]);
 
 void warmStart(Bodies& bodies, const std::vector<Contact>& contacts);
+/// Once before the sweeps of a sub-step: how fast each gap may close.
+void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h);
 /// One sweep; gives the largest change of a relative velocity, m/s.
-double solve(Bodies& bodies, std::vector<Contact>& contacts, double h);
+double solve(Bodies& bodies, std::vector<Contact>& contacts);
 void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most);
 
 }  // namespace smokebox

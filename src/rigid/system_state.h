@@ -35,6 +35,7 @@ struct RigidSystem::State {
   void yieldTorn();
   void findWays(double h, bool withStruck);
   void impacts(double h);
+  bool isSqueezed(const Contact& contact) const;
   void keepInside();
   void warmStartAll(double h);
   void collectTouches(const std::vector<Contact>& contacts);

@@ -15,20 +15,22 @@ namespace smokebox {
 namespace {
 // A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
 // are fewer than the second number.
-constexpr long kManySweeps = 6000, kTwoSweeps = 30000;
+constexpr long kManySweeps = 6000, kManySweepsOfFew = 20000, kTwoSweeps = 30000;
 // Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
 constexpr double kSettled = 1e-3;
 // ... or by this share of what the first sweep changed beyond that: of impacts.
 constexpr double kSettledShare = 1e-2;
 // Both are this much less for a few points.
 constexpr double kSettledFew = 1e-8;
-constexpr long kFewPoints = 100;
+constexpr long kFewPoints = 240;
 // Of an overlap, in each sub-step.
 constexpr double kSeparateShare = 0.2;
 // Overlapping bodies are moved apart at this speed at most, m/s.
 constexpr double kSeparateSpeed = 4;
 // Approaches slower than what gravity adds in so many sub-steps do not bounce.
 constexpr double kRestingSubSteps = 2;
+// Contacts that overlap by more than this share of the thinner one's width do not bounce.
+constexpr double kSqueezed = 0.01;
 constexpr int kWalls = 4;
 }  // namespace
 
@@ -178,9 +180,9 @@ void RigidSystem::State::impacts(double h) {
   for (int round = 0; round < kRounds; ++round) {
     bouncers.clear();
     for (const int k : bouncing)
-      if (!narrow.isDropped(k)) bouncers.push_back(&narrow.calm()[k]);
+      if (!narrow.isDropped(k) && !isSqueezed(narrow.calm()[k])) bouncers.push_back(&narrow.calm()[k]);
     for (Contact& contact : narrow.lively())
-      if (contact.bounce > 0) bouncers.push_back(&contact);
+      if (contact.bounce > 0 && !isSqueezed(contact)) bouncers.push_back(&contact);
     if (bouncers.empty()) return;
     impact.run(bodies, bouncers, h, gravity, least, struck);
     if (impact.count() == 0) return;
@@ -190,6 +192,17 @@ void RigidSystem::State::impacts(double h) {
     if (narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) shareKnown = false;
     narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
   }
+}
+
+// What is pressed into each other and pushed apart already does not bounce: it would be struck over and over.
+bool RigidSystem::State::isSqueezed(const Contact& contact) const {
+  const double deep =
+      -kSqueezed * std::min(bodies.def[contact.a].shape->thinnest, bodies.def[contact.b].shape->thinnest);
+  for (int k = 0; k < contact.count; ++k)
+    if (contact.points[k].impulseN > 0 &&
+        contact.points[k].gap + gapMoved(bodies, contact, contact.points[k]) < deep)
+      return true;
+  return false;
 }
 
 void RigidSystem::State::findWays(double h, bool withStruck) {
@@ -267,28 +280,34 @@ double RigidSystem::State::sweep(double h, bool first) {
   if (!joints.empty()) change = std::max(change, joints.solve(bodies, h));
   if (!springs.empty()) change = std::max(change, springs.solve(bodies, h));
   change = std::max(change, blocks.solve(bodies, h, first));
-  change = std::max(change, solve(bodies, spare, h));
-  change = std::max(change, solve(bodies, narrow.lively(), h));
+  change = std::max(change, solve(bodies, spare));
+  change = std::max(change, solve(bodies, narrow.lively()));
   return change;
 }
 
 void RigidSystem::State::solveContacts(double h) {
   warmStartAll(h);
-  const long points =
-      1 + static_cast<long>(8 * blocks.size() + 2 * spare.size() + 2 * narrow.lively().size());
+  auto points = [&] {
+    return 1 + 8 * static_cast<long>(blocks.size() + spare.size() + narrow.lively().size());
+  };
   // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
-  const bool few = points <= kFewPoints && springs.empty() && joints.empty();
+  const bool few = points() <= kFewPoints && springs.empty() && joints.empty();
   const double care = few ? kSettledFew : 1;
-  double settled = care * kSettled * (1 + 1e-3 * points) * h * length(gravity) + care * 1e-9;
+  double settled = care * kSettled * (1 + 1e-3 * points()) * h * length(gravity) + care * 1e-9;
   stirred = false;
+  prepare(bodies, spare, h);
+  long left = few ? kManySweepsOfFew : kManySweeps;
   for (int round = 0; round < 3; ++round) {
+    prepare(bodies, narrow.lively(), h);
+    const long work = points();
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       const double change = sweep(h, round == 0 && sweeps == 1);
+      left -= work;
       if (sweeps == 1)
         settled =
-            std::max(settled, care * std::min(kSettledShare, 1e-6 * points) * (change - h * length(gravity)));
+            std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
       if (change <= settled) break;
-      if ((sweeps + 1) * points > kManySweeps && (sweeps > 1 || points > kTwoSweeps)) break;
+      if (left < work && (sweeps > 1 || work > kTwoSweeps)) break;
     }
     findWays(h, false);
     giveBackSpare();
@@ -329,11 +348,12 @@ void RigidSystem::State::keepInside() {
   const bool shut[] = {walls.sides[0] == closed, walls.sides[1] == closed, walls.sides[2] == closed,
                        walls.sides[3] == closed};
   auto keep = [](double at, double size, bool low, bool high, double& moved, double& speed) {
-    if (low && at < 0) {
-      moved -= at;
+    const double edge = 1e-12 * size;  // inside by more than a rounding
+    if (low && at < edge) {
+      moved += edge - at;
       speed = std::max(speed, 0.0);
-    } else if (high && at > size) {
-      moved -= at - size;
+    } else if (high && at > size - edge) {
+      moved += size - edge - at;
       speed = std::min(speed, 0.0);
     }
   };
