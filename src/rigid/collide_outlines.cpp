@@ -63,16 +63,16 @@ bool collideOutlines(const Side& ab, const Side& ba, double separation, double m
   constexpr double kFar = 10, kSwallowed = 0.2;
   const bool found = choice.manifold.count > 0;
   const bool swallowed = separation < -kSwallowed * std::min(ab.reference.reach, ba.reference.reach);
-  if (found && (swallowed || choice.separation >= std::min(0.0, kFar * separation))) {
+  if (found && choice.separation >= std::min(0.0, kFar * separation)) {
     manifold = choice.manifold;
     return true;
   }
   if (!swallowed) return false;
-  if (choice.fallback.count == 0) {
-    nearestOutline(ab, choice);
-    nearestOutline(ba, choice);
-  }
-  manifold = choice.fallback;
+  // Out of what swallowed it by the nearest edge, never across a whole wall.
+  nearestOutline(ab, choice);
+  nearestOutline(ba, choice);
+  const bool near = found && choice.separation >= kFar * choice.fallbackSeparation;
+  manifold = near ? choice.manifold : choice.fallback;
   return manifold.count > 0;
 }
 

@@ -16,6 +16,11 @@ constexpr int kMostTimes = 8;
 // After so many, the slowest approach that still bounces doubles with each one: a heap comes to rest soon.
 constexpr int kFreeTimes = 2;
 
+// Impacts of a step, beyond so many and so many for each body: the slowest approach that still bounces
+// doubles with each further so many. A crowd that is driven together settles what is left in the contact
+// solver.
+constexpr long kFreeOfStep = 1000, kFreeOfBody = 8, kDoubling = 100;
+
 /// What displacements make of a point's gap.
 double gapOf(const std::vector<Motion>& way, const Contact& contact, const ContactPoint& point) {
   const Motion &wa = way[contact.a], &wb = way[contact.b];
@@ -217,7 +222,9 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
 
 double Impacts::leastOf(const Contact& contact, double least) const {
   const int times = std::max(times_[contact.a], times_[contact.b]);
-  return times <= kFreeTimes ? least : least * static_cast<double>(1 << (times - kFreeTimes));
+  const long bodies = static_cast<long>(times_.size()), over = inStep_ - kFreeOfStep - kFreeOfBody * bodies;
+  const long doublings = std::max(0, times - kFreeTimes) + std::max(0L, over) / (kDoubling + bodies / 4);
+  return doublings == 0 ? least : least * static_cast<double>(1L << std::min(doublings, 40L));
 }
 
 void Impacts::begin(int bodies) {
@@ -261,6 +268,7 @@ void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double 
         ++times_[body];
       }
     ++count_;
+    ++inStep_;
     for (const int body : {contact.a, contact.b}) {
       if (!bodies.moves(body)) continue;
       for (int at = firstAt_[body]; at >= 0; at = at % 2 == 0 ? nextA_[at / 2] : nextB_[at / 2])

@@ -6,7 +6,7 @@
 // w = v + a (t - h/2). The impulse changes v by -(1 + e) w, and the body's way by -t times the change of its
 // velocity: so flight, bounce and flight again are exact, whenever within the sub-step the bounce falls.
 // Impulses go on (body to body to body: a cradle) until nothing approaches, up to a number for each body;
-// each one takes energy or keeps it, so that however many there are, none is added.
+// each one takes energy or keeps it, so that however many there are, none is added. A step has a bound, too.
 #pragma once
 #include <vector>
 
@@ -17,6 +17,7 @@ namespace smokebox {
 
 class Impacts {
  public:
+  void beginStep() { inStep_ = 0; }
   /// Before the first run of a sub-step.
   void begin(int bodies);
   /// `contacts`: those that may bounce. Slower approaches than `least` (m/s) are left to the contact solver.
@@ -57,7 +58,7 @@ class Impacts {
   Vec2 acceleration(const Bodies& bodies, const Contact& contact) const;
 
   Vec2 gravity_;
-  long count_ = 0;
+  long count_ = 0, inStep_ = 0;
   std::vector<double> struckAt_;
   std::vector<int> times_;  // by body: impacts within the sub-step
   std::vector<Event> heap_;

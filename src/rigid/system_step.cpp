@@ -142,6 +142,7 @@ void RigidSystem::State::beginStep(double step) {
   joints.beginStep(bodies, dt, method.subSteps);
   calmShare.assign(bodies.count(), Motion{});
   shareKnown = false;
+  impact.beginStep();
   struck.assign(bodies.count(), Motion{});
   way.assign(bodies.count(), Motion{});
 }
@@ -291,7 +292,7 @@ void RigidSystem::State::solveContacts(double h) {
     return 1 + 8 * static_cast<long>(blocks.size() + spare.size() + narrow.lively().size());
   };
   // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
-  const bool few = points() <= kFewPoints && springs.empty() && joints.empty();
+  const bool few = points() <= kFewPoints && blocks.empty() && springs.empty() && joints.empty();
   const double care = few ? kSettledFew : 1;
   double settled = care * kSettled * (1 + 1e-3 * points()) * h * length(gravity) + care * 1e-9;
   stirred = false;

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <vector>
 
 #include "support/rigid_cases.h"
@@ -39,14 +39,17 @@ double fastest(const RigidWorld& world) {
   return speed;
 }
 
-/// The time of each step, ms.
+/// What each step takes this thread, ms: the least of several runs of the same steps.
 class StepTimes {
  public:
+  void begin() { at_ = 0; }
   void step(RigidWorld& world) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now();
     world.steps(1);
-    times_.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    const double took = now() - start;
+    if (at_ == times_.size()) times_.push_back(took);
+    times_[at_] = std::min(times_[at_], took);
+    ++at_;
   }
   double worst() const { return *std::max_element(times_.begin(), times_.end()); }
   double median() const {
@@ -56,7 +59,13 @@ class StepTimes {
   }
 
  private:
+  static double now() {
+    timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  }
   std::vector<double> times_;
+  std::size_t at_ = 0;
 };
 
 TEST(RigidJam, BodiesThatOverlapAtTheStartPartGently) {
@@ -108,12 +117,11 @@ TEST(RigidJam, ClosingWallsCrushWhatIsBetweenThem) {
   for (int k = 0; k < 12; ++k)
     world.add(rough(k % 2 ? kBox : randomPolygon(dice, k % 4 == 0), {12 + 1.4 * k, 1}));
   double speed = 0;
-  StepTimes times;
   for (int k = 0; k < 300; ++k) {
     const double x = 5 + 13 * std::min(1.0, k / 150.0);  // down to 3 m for twelve metres of bodies
     world.system.moveTo(left, {x, 8}, 0);
     world.system.moveTo(right, {40 - x, 8}, 0);
-    times.step(world);
+    world.steps(1);
     speed = std::max(speed, fastest(world));
   }
   EXPECT_EQ(outside(world, 40, 20), 0);
@@ -121,12 +129,11 @@ TEST(RigidJam, ClosingWallsCrushWhatIsBetweenThem) {
   for (int k = 0; k < 60; ++k) {
     world.system.moveTo(left, {18 - 13 * k / 60.0, 8}, 0);
     world.system.moveTo(right, {22 + 13 * k / 60.0, 8}, 0);
-    times.step(world);
+    world.steps(1);
   }
   world.seconds(5);
   EXPECT_LT(fastest(world), 1);
   EXPECT_LT(world.system.totals().overlap, 0.02);
-  EXPECT_LT(times.worst(), 60 * times.median() + 20);
 }
 
 TEST(RigidJam, AWedgedBodyStays) {
@@ -148,6 +155,59 @@ TEST(RigidJam, AWedgedBodyStays) {
   EXPECT_NEAR(world.at(heavy).y, y, 5e-3);
   EXPECT_LT(world.system.totals().overlap, 0.02);
   EXPECT_LT(fastest(world), 0.1);
+}
+
+TEST(RigidJam, APocketOfAHundredThatCloses) {
+  // Truth: polygons in a pocket that is pressed to 60% of their area at 10 m/s: none gets out, none is shot
+  // off, and no step takes more than ten times the usual one.
+  StepTimes times;
+  for (int run = 0; run < 2; ++run) {
+    RigidWorld world(closedBox(8, 40, 0.2, 0.5), {0, -kG});
+    Dice dice(8);
+    double area = 0;
+    for (int k = 0; k < 120; ++k) {
+      BodyDef def = rough(randomPolygon(dice, k % 4 == 0, 0.4), {0.8 + k % 8 * 0.92, 0.6 + k / 8 * 0.95});
+      def.bounce = k % 2 * 0.2;
+      area += def.mass;
+      world.add(def);
+    }
+    const int lid = world.add(solidAt(solidShape(BoxShape{{7.9, 1}}), {4, 24}));
+    const double low = 0.6 * area / 8 + 0.5;
+    double speed = 0;
+    times.begin();
+    for (int k = 0; k < 240; ++k) {
+      world.system.moveTo(lid, {4, std::max(low, 24 - 10 * k * RigidWorld::kStep)}, 0);
+      times.step(world);
+      speed = std::max(speed, fastest(world));
+      ASSERT_EQ(outside(world, 8, 40), 0) << k;
+    }
+    EXPECT_LT(speed, 60);
+    EXPECT_LT(world.system.totals().overlap, 2);
+  }
+  EXPECT_LT(times.worst(), 10 * times.median() + 1);
+}
+
+TEST(RigidJam, APaddleSpinsInAFullBin) {
+  // Truth: a scripted paddle that turns 2 times a second in a full bin, its tips at 25 m/s: the bodies stay
+  // in it, and no step takes more than ten times the usual one.
+  StepTimes times;
+  for (int run = 0; run < 2; ++run) {
+    RigidWorld world(closedBox(7, 16, 0.2, 0.5), {0, -kG});
+    Dice dice(6);
+    const int paddle = world.add(solidAt(solidShape(BoxShape{{4, 0.3}}), {3.5, 2.8}));
+    for (int k = 0; k < 70; ++k)
+      (world.add(rough(randomPolygon(dice, k % 4 == 0, 0.4), {0.8 + k % 7 * 0.92, 5 + k / 7 * 0.95})));
+    double speed = 0;
+    times.begin();
+    for (int k = 1; k <= 240; ++k) {
+      world.system.moveTo(paddle, {3.5, 2.8}, 4 * kPi * k * RigidWorld::kStep);
+      times.step(world);
+      speed = std::max(speed, fastest(world));
+      ASSERT_EQ(outside(world, 7, 16), 0) << k;
+    }
+    EXPECT_LT(speed, 200);
+  }
+  EXPECT_LT(times.worst(), 10 * times.median() + 1);
 }
 
 }  // namespace
