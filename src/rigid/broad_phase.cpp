@@ -13,23 +13,19 @@ bool mayMeet(const Bodies& bodies, int a, int b) {
   if (!bodies.moves(a) && !bodies.moves(b)) return false;
   return (bodies.def[a].ignore & bodies.def[b].ignore) == 0 && !bodies.areJoined(a, b);
 }
-}  // namespace
 
-Box boxOf(const BodyShape& shape, const Frame& frame) {
-  if (shape.pieces.size() == 1 && shape.pieces[0].points.size() == 1) {
-    const Vec2 centre = toWorld(frame, shape.pieces[0].points[0]);
-    return grown({centre, centre}, shape.pieces[0].radius);
-  }
-  if (shape.tree.nodes().empty()) return {frame.position, frame.position};
-  const PieceTree::Node& own = shape.tree.nodes()[0];
+/// Box of a body whose frame is `frame`.
+Box boxOf(const Extent& own, const Frame& frame) {
   const Vec2 middle = toWorld(frame, own.centre), half = own.half;
+  if (own.radius > 0) return grown({middle, middle}, own.radius);
   const double c = std::abs(frame.turn.c), s = std::abs(frame.turn.s);
   const Vec2 reach{c * half.x + s * half.y, s * half.x + c * half.y};
   return {middle - reach, middle + reach};
 }
+}  // namespace
 
 bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Vec2 later) {
-  const BodyShape& shape = *bodies.def[body].shape;
+  const Extent& shape = bodies.extent[body];
   const Motion& v = bodies.velocity[body];
   const double turns = std::abs(v.turn) * dt;
   Box box = boxOf(shape, bodies.frameNow(body));

@@ -21,9 +21,12 @@ struct BodyPair {
   PairKey key;
   // Contacts of the last step: a range of the narrow phase's memory ...
   int first = 0, count = 0;
-  // ... all that are closer than `margin`, found when the bodies had travelled so far; below 0: to be found
-  // anew.
-  double margin = -1, travelled = 0;
+  // ... all that are closer than `margin` (below 0: to be found anew) ...
+  double margin = -1;
+  // ... when b was there, seen from a, and they had turned so far.
+  Vec2 between{};
+  double angleA = 0, angleB = 0;
+  bool apart = false;  // there is nothing closer, whatever turns: not only no contact
 };
 
 class BroadPhase {
@@ -58,8 +61,5 @@ class BroadPhase {
   std::vector<PairKey> found_, late_;  // late: found within a step
   long sinceBuild_ = 0;
 };
-
-/// Box of a body whose frame is `frame`.
-Box boxOf(const BodyShape& shape, const Frame& frame);
 
 }  // namespace smokebox

@@ -21,7 +21,10 @@ bool collideDisk(const Side& side, double margin, Manifold& manifold) {
   double most = -1e300, mostOutline = -1e300;
   for (int k = 0; k < n; ++k) {
     const double separation = dot(p.normals[k], centre - p.points[k]);
-    if (separation > limit) return false;
+    if (separation > limit) {
+      manifold.apart = separation - limit + margin;
+      return false;
+    }
     if (separation > most) {
       most = separation;
       edge = k;
@@ -38,7 +41,10 @@ bool collideDisk(const Side& side, double margin, Manifold& manifold) {
   manifold.count = 0;
   const bool outside = most > tiny || (n == 2 && apart > tiny);
   if (outside) {
-    if (apart > limit) return false;
+    if (apart > limit) {
+      manifold.apart = apart - limit + margin;
+      return false;
+    }
     if (share == 0 || share == 1) {
       const int corner = share == 0 ? edge : next(p, edge);
       if (!inCone(p, corner, (1 / apart) * (centre - nearest))) return false;
@@ -59,7 +65,10 @@ bool collideDisk(const Side& side, double margin, Manifold& manifold) {
 bool collideDisks(const Side& side, double margin, Manifold& manifold) {
   const Vec2 a = side.reference.points[0], b = toWorld(side.otherInReference, side.other.points[0]);
   const double apart = length(b - a), sum = side.reference.radius + side.other.radius;
-  if (apart > sum + margin) return false;
+  if (apart > sum + margin) {
+    manifold.apart = apart - sum;
+    return false;
+  }
   manifold.count = 0;
   if (apart > 1e-12 * sum) {
     touchCorner(side, a, b, apart, 0, manifold);
@@ -121,22 +130,34 @@ bool apartInLine(const Side& side, double tiny) {
 bool collide(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const Frame& fb, double margin,
              Manifold& manifold) {
   manifold.count = 0;
-  if (a.buried || b.buried) return false;
+  manifold.apart = 0;
+  manifold.face = 0;
+  if (a.buried || b.buried) {
+    manifold.apart = 1e300;
+    return false;
+  }
   const Frame bInA = relativeFrame(fa, fb);
   const Vec2 between = toWorld(bInA, b.centre) - a.centre;
   const double near = a.reach + b.reach + margin;
-  if (dot(between, between) > near * near) return false;
+  if (dot(between, between) > near * near) {
+    manifold.apart = length(between) - a.reach - b.reach;
+    return false;
+  }
   const Frame aInB = relativeFrame(fb, fa);
   const Side ab{a, fa, b, bInA, false}, ba{b, fb, a, aInB, true};
   if (a.points.size() == 1)
     return b.points.size() == 1 ? collideDisks(ab, margin, manifold) : collideDisk(ba, margin, manifold);
   if (b.points.size() == 1) return collideDisk(ab, margin, manifold);
 
-  const double limit = margin + a.radius + b.radius;
+  const double radii = a.radius + b.radius, limit = margin + radii;
+  auto areApart = [&](double cores) {
+    manifold.apart = cores - radii;
+    return cores > limit;
+  };
   const Axis onA = largestSeparation(a, b, bInA, limit);
-  if (onA.separation > limit) return false;
+  if (areApart(onA.separation)) return false;
   const Axis onB = largestSeparation(b, a, aInB, limit);
-  if (onB.separation > limit) return false;
+  if (areApart(onB.separation)) return false;
   const bool betterOnA = onA.separation >= onB.separation;
   const Side& best = betterOnA ? ab : ba;
   const Axis& axis = betterOnA ? onA : onB;
@@ -148,7 +169,7 @@ bool collide(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const 
     const Turn turn = best.otherInReference.turn;
     const int facing = edgeFacing(q, axis.support, -inverseRotate(turn, p.normals[axis.edge]));
     const ClosestFeatures closest = closestOfEdges(best, axis.edge, facing);
-    if (closest.apart > limit) return false;
+    if (areApart(closest.apart)) return false;
     // Flush faces are no corners: then the way from corner to corner is along the normal.
     const Vec2 way = closest.onOther - closest.onReference;
     const bool corners = closest.referenceCorner >= 0 && closest.otherCorner >= 0 && closest.apart > tiny &&

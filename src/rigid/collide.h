@@ -21,6 +21,8 @@ struct Manifold {
   Vec2 normal;  // from A to B, world
   int count = 0;
   ManifoldPoint points[2];
+  int face = 0;  // whose edge gives the normal, and meets sharp corners: 1 A, 2 B; 0: corners or round ones
+  double apart = 0;  // where there is no contact: the gap is at least so large
 };
 
 /// Contact of two pieces whose gap is below `margin` (at the closest); false: farther apart, or only through

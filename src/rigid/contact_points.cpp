@@ -25,6 +25,12 @@ void setNormal(const Side& side, Vec2 normal, Manifold& manifold) {
   manifold.normal = side.flipped ? -world : world;
 }
 
+namespace {
+void setFace(const Side& side, Manifold& manifold) {
+  manifold.face = side.other.radius > 0 ? 0 : side.flipped ? 2 : 1;
+}
+}  // namespace
+
 void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::uint32_t feature,
                  Manifold& manifold) {
   const Vec2 normal = (1 / apart) * (point - nearest);
@@ -40,6 +46,7 @@ void cornerOnFace(const Side& side, int k, int corner, Manifold& manifold) {
   addPoint(side, at, dot(normal, at - side.reference.points[k]), normal, featureOf(side, k, corner, false),
            manifold);
   setNormal(side, normal, manifold);
+  setFace(side, manifold);
 }
 
 namespace {
@@ -73,6 +80,7 @@ bool clipToFace(const Side& side, int k, int incident, double margin, Manifold& 
     if (apart <= reach) addPoint(side, point, apart, normal, feature, manifold);
   }
   setNormal(side, normal, manifold);
+  setFace(side, manifold);
   return manifold.count > 0;
 }
 

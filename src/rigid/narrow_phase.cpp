@@ -19,6 +19,9 @@ constexpr double kCalmTurn = 0.1;  // rad
 constexpr double kStray = 0.02;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
 constexpr double kReuse = 2e-3;
+// ... or have turned by so much, rad, where the normal does not follow an edge: no stack leans on those of
+// before.
+constexpr double kReuseTurn = 1e-5;
 // Lively ones, after this share: less where they bounce.
 constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 // A lively pair that is this many sub-steps apart is left alone for as long.
@@ -33,13 +36,6 @@ constexpr double kCrushed = 0.03, kCrushSpeed = 0.2;
 constexpr double kNear = 0.01;
 // Swept pairs are stopped at this share of the thinner one's width from each other.
 constexpr double kTarget = 1e-3;
-
-/// How far from the centre of mass a turn moves anything: nothing of a disk that turns about its centre.
-double turningReach(const BodyShape& shape) {
-  const ConvexPiece& first = shape.pieces[0];
-  return shape.pieces.size() == 1 && first.points.size() == 1 && first.points[0] == Vec2{0, 0} ? 0
-                                                                                               : shape.reach;
-}
 
 bool touching(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const Frame& fb, double margin) {
   Manifold manifold;
@@ -88,44 +84,64 @@ bool isMoving(const Bodies& bodies, int body) {
 }
 
 /// Distance of the point from the box around a body's pieces.
-double distanceFrom(const BodyShape& shape, const Frame& frame, Vec2 point) {
-  const PieceTree::Node& box = shape.tree.nodes()[0];
+double distanceFrom(const Extent& box, const Frame& frame, Vec2 point) {
   const Vec2 p = toLocal(frame, point) - box.centre;
   const Vec2 out{std::max(std::abs(p.x) - box.half.x, 0.0), std::max(std::abs(p.y) - box.half.y, 0.0)};
   return length(out);
 }
 
-/// Are they surely farther apart than `margin`? A body that does not turn tells more.
-bool surelyApartByBoxes(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) {
-  const BodyShape &a = *bodies.def[key.a].shape, &b = *bodies.def[key.b].shape;
-  if (a.tree.nodes().empty() || b.tree.nodes().empty()) return true;
+/// A bound from below, cheap, on how far two bodies are apart: by the circles around them, then by the box of
+/// one and the circle of the other. `enough`: what needs no better one.
+double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough) {
+  const Extent &a = bodies.extent[key.a], &b = bodies.extent[key.b];
   const Vec2 pa = bodies.positionNow(key.a), pb = bodies.positionNow(key.b) + shift;
-  if (bodies.moved[key.a].turn == 0 && distanceFrom(a, {pa, bodies.turn[key.a]}, pb) > b.reach + margin)
-    return true;
-  return bodies.moved[key.b].turn == 0 && distanceFrom(b, {pb, bodies.turn[key.b]}, pa) > a.reach + margin;
+  const double circles = length(pb - pa) - a.reach - b.reach;
+  if (circles > enough) return circles;
+  const double boxA = a.radius > 0 ? circles : distanceFrom(a, bodies.frameNow(key.a), pb) - b.reach;
+  if (boxA > enough || b.radius > 0) return std::max(circles, boxA);
+  Frame fb = bodies.frameNow(key.b);
+  fb.position = pb;
+  return std::max({circles, boxA, distanceFrom(b, fb, pa) - a.reach});
 }
 
+/// Largest speed of any point of one against any of the other.
+double relativeSpeed(const Bodies& bodies, int a, int b) {
+  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
+  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach +
+         std::abs(vb.turn) * bodies.extent[b].turningReach;
+}
+
+double thinner(const Bodies& bodies, int a, int b) {
+  return std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
+}
+/// Moves a contact along with its bodies, which have moved a little since it was found: the normal turns with
+/// the one whose edge it stands on, the points go with the other one's corners.
+void bringUpToDate(const Bodies& bodies, Contact& contact) {
+  for (int k = 0; k < contact.count; ++k)
+    contact.points[k].gap += gapMoved(bodies, contact, contact.points[k]);
+  const int edges = contact.face == 1 ? contact.a : contact.b;
+  const Motion &da = bodies.moved[contact.a], &db = bodies.moved[contact.b];
+  if (contact.face == 0) return;
+  const Turn by = turnedBy({}, bodies.moved[edges].turn);
+  contact.normal = rotate(by, contact.normal);
+  const Turn corners = turnedBy({}, contact.face == 1 ? db.turn : da.turn);
+  const Vec2 apart = bodies.positionNow(contact.b) + contact.shift - bodies.positionNow(contact.a);
+  for (int k = 0; k < contact.count; ++k) {
+    ContactPoint& p = contact.points[k];
+    if (contact.face == 1) {
+      p.armB = rotate(corners, p.armB);
+      p.armA = p.armB + apart;
+    } else {
+      p.armA = rotate(corners, p.armA);
+      p.armB = p.armA - apart;
+    }
+  }
+}
 }  // namespace
 
-double NarrowPhase::relativeSpeed(const Bodies& bodies, int a, int b) const {
-  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
-  return length(va.linear() - vb.linear()) + std::abs(va.turn) * measures_[a].turningReach +
-         std::abs(vb.turn) * measures_[b].turningReach;
-}
-
-bool NarrowPhase::surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) const {
-  const Vec2 between = bodies.positionNow(key.b) + shift - bodies.positionNow(key.a);
-  const double reach = measures_[key.a].reach + measures_[key.b].reach + margin;
-  return dot(between, between) > reach * reach || surelyApartByBoxes(bodies, key, shift, margin);
-}
-
-double NarrowPhase::thinner(int a, int b) const {
-  return std::min(measures_[a].thinnest, measures_[b].thinnest);
-}
-
-void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
-                       bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
-                       const Later& later) {
+double NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
+                         bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
+                         const Later& later) {
   const BodyDef &a = bodies.def[key.a], &b = bodies.def[key.b];
   auto ahead = [&](int body, const Motion& struck) -> Motion {
     const Motion& v = bodies.velocity[body];
@@ -139,21 +155,26 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
   }
   fb.position = fb.position + shift;
   const double rest = h - later.time;
-  findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
+  const bool onePair = findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
+  double clear = onePair ? 1e300 : margin;
   Manifold manifold;
   for (const PiecePair& pieces : pieces_) {
     const ConvexPiece &pa = a.shape->pieces[pieces.a], &pb = b.shape->pieces[pieces.b];
     const Vec2 apart = toWorld(fb, pb.centre) - toWorld(fa, pa.centre);
     const double near = pa.reach + pb.reach + margin;
-    if (dot(apart, apart) > near * near) continue;
+    if (dot(apart, apart) > near * near) {
+      clear = std::min(clear, length(apart) - pa.reach - pb.reach);
+      continue;
+    }
     double share = 0;
     Frame ta = fa, tb = fb;
     if (swept) {
-      const double target = kTarget * thinner(key.a, key.b);
+      const double target = kTarget * thinner(bodies, key.a, key.b);
       if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
         const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
         const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
         const auto hit = timeOfImpact(pa, sa, pb, sb, target);
+        clear = 0;
         if (!hit) continue;
         share = *hit;
         ta = frameAt(sa, share);
@@ -161,8 +182,10 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
         if (!collide(pa, ta, pb, tb, 4 * target, manifold)) continue;
       }
     } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
+      clear = std::min(clear, manifold.apart);
       continue;
     }
+    clear = 0;
     Contact contact;
     contact.a = key.a;
     contact.b = key.b;
@@ -171,6 +194,7 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
     contact.normal = manifold.normal;
     contact.shift = shift;
     contact.count = manifold.count;
+    contact.face = manifold.face;
     contact.friction = std::sqrt(a.friction * b.friction);
     contact.bounce = std::max(a.bounce, b.bounce);
     for (int k = 0; k < manifold.count; ++k) {
@@ -201,6 +225,7 @@ void NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, dou
     }
     found.push_back(contact);
   }
+  return clear;
 }
 
 void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
@@ -208,15 +233,11 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   h_ = dt / subSteps;
   elapsed_ = 0;
   expected_.resize(count);
-  measures_.resize(count);
-  travelled_.resize(count, 0);
   stirred_.assign(count, 0);
   for (int b = 0; b < count; ++b) {
     if (!bodies.there[b]) continue;
-    const BodyShape& shape = *bodies.def[b].shape;
-    measures_[b] = {turningReach(shape), shape.thinnest, shape.reach};
     const double fall = length(gravity) * std::abs(bodies.def[b].gravityScale) * dt * dt;
-    expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * shape.thinnest : 0};
+    expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * bodies.extent[b].thinnest : 0};
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
@@ -229,7 +250,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     BodyPair& pair = pairs[k];
     const int a = pair.key.a, b = pair.key.b;
     calmFirst_[k] = static_cast<int>(calm_.size());
-    const double thin = thinner(a, b);
+    const double thin = thinner(bodies, a, b);
     const double way = relativeSpeed(bodies, a, b) * dt;
     const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
     const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
@@ -242,8 +263,17 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
       continue;
     }
     const double margin = way + expected_[a].room + expected_[b].room;
-    const double since = travelled_[a] + travelled_[b] - pair.travelled;
-    if (since <= kReuse * thin && margin + since <= pair.margin) {
+    const Vec2 shift = broad.shiftOf(pair.key), between = bodies.position[b] + shift - bodies.position[a];
+    const double turnedA = std::abs(bodies.angleRad[a] - pair.angleA),
+                 turnedB = std::abs(bodies.angleRad[b] - pair.angleB);
+    const double since = length(between - pair.between) + turnedA * bodies.extent[a].turningReach +
+                         turnedB * bodies.extent[b].turningReach;
+    auto follows = [&] {
+      const auto begin = memory_.begin() + pair.first;
+      return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
+    };
+    const bool same = since <= kReuse * thin && (std::max(turnedA, turnedB) <= kReuseTurn || follows());
+    if ((pair.apart || same) && margin + since <= pair.margin) {
       calm_.insert(calm_.end(), memory_.begin() + pair.first, memory_.begin() + pair.first + pair.count);
       for (auto c = calm_.end() - pair.count; c != calm_.end(); ++c) {
         setMasses(bodies, *c);
@@ -254,10 +284,15 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
       continue;
     }
     pair.margin = margin + 2 * kReuse * thin;
-    pair.travelled = travelled_[a] + travelled_[b];
-    if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), pair.margin)) continue;
-    find(bodies, pair.key, broad.shiftOf(pair.key), pair.margin, h_, false, memory_.data() + pair.first,
-         pair.count, calm_, {});
+    pair.between = between;
+    pair.angleA = bodies.angleRad[a];
+    pair.angleB = bodies.angleRad[b];
+    double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
+    if (clear <= pair.margin)
+      clear = find(bodies, pair.key, shift, pair.margin, h_, false, memory_.data() + pair.first, pair.count,
+                   calm_, {});
+    pair.apart = clear >= pair.margin;
+    pair.margin = std::max(pair.margin, clear);
   }
   calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
   for (Contact& contact : calm_) contact.total = 0;
@@ -291,7 +326,7 @@ void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double 
   next_.clear();
   for (LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
-    const double thin = thinner(a, b);
+    const double thin = thinner(bodies, a, b);
     const double way = relativeSpeed(bodies, a, b) * h;
     pair.swept = way > kSwept * thin;
     const int first = static_cast<int>(next_.size());
@@ -299,15 +334,13 @@ void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double 
     if (pair.clear < 0) {
       const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
       const double reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
-      const double near = way + kNear * thin + reuse, margin = pair.swept ? way : kAhead * near;
-      if (surelyApart(bodies, pair.key, broad.shiftOf(pair.key), margin)) {
-        pair.clear = margin - near;
-      } else {
-        find(bodies, pair.key, broad.shiftOf(pair.key), pair.swept ? way : near, h, pair.swept,
-             lively_.data() + pair.first, pair.count, next_,
-             {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
-        if (static_cast<int>(next_.size()) > first && !pair.swept) pair.clear = reuse;
-      }
+      const double near = pair.swept ? way : way + kNear * thin + reuse;
+      const Vec2 shift = broad.shiftOf(pair.key);
+      double clear = clearance(bodies, pair.key, shift, kAhead * near);
+      if (clear <= near)
+        clear = find(bodies, pair.key, shift, near, h, pair.swept, lively_.data() + pair.first, pair.count,
+                     next_, {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
+      pair.clear = static_cast<int>(next_.size()) > first && !pair.swept ? reuse : clear - near;
     } else {
       next_.insert(next_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
       for (std::size_t k = first; k < next_.size(); ++k) {
@@ -337,12 +370,12 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
         std::any_of(begin, end, [](const Contact& c) { return c.struck; })) {
       next_.insert(next_.end(), begin, end);
     } else {
-      const double thin = thinner(a, b), way = relativeSpeed(bodies, a, b) * h;
+      const double thin = thinner(bodies, a, b), way = relativeSpeed(bodies, a, b) * h;
       pair.swept = way > kSwept * thin;
       pair.clear = 0;
       const double margin = pair.swept ? way : way + kNear * thin;
       const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());
-      if (!surelyApart(bodies, pair.key, broad.shiftOf(pair.key), reach + way))
+      if (clearance(bodies, pair.key, broad.shiftOf(pair.key), reach + way) <= reach + way)
         find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept, lively_.data() + pair.first,
              pair.count, next_, {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
     }
@@ -372,7 +405,7 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
     const Motion &m = bodies.moved[b], &w = way[b];
     const Vec2 off = m.linear() + w.linear() - t * e.velocity.linear();
     const double turned = m.turn + w.turn - t * e.velocity.turn;
-    const double left = e.room - std::abs(turned) * measures_[b].turningReach;
+    const double left = e.room - std::abs(turned) * bodies.extent[b].turningReach;
     if (left >= 0 && dot(off, off) <= left * left) continue;
     stirred_[b] = 1;
     e.velocity = bodies.velocity[b];
@@ -408,7 +441,7 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
 void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {
   crushed_.clear();
   auto isCrushed = [&](const Contact& c) {
-    const double deep = kCrushed * thinner(c.a, c.b);
+    const double deep = kCrushed * thinner(bodies, c.a, c.b);
     for (int k = 0; k < c.count; ++k) {
       const ContactPoint& p = c.points[k];
       if (p.impulseN > 0 && p.gap + gapMoved(bodies, c, p) < -deep &&
@@ -427,7 +460,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
   crushed_.erase(std::unique(crushed_.begin(), crushed_.end()), crushed_.end());
   auto speed = [&](int body) {
     const Motion& v = before[body];
-    return length(v.linear()) + std::abs(v.turn) * measures_[body].turningReach;
+    return length(v.linear()) + std::abs(v.turn) * bodies.extent[body].turningReach;
   };
   // Nothing that gives way can make it faster than the fastest of those around it.
   crushSpeed_.resize(crushed_.size());
@@ -445,7 +478,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
   for (std::size_t k = 0; k < crushed_.size(); ++k) {
     Motion& v = bodies.velocity[crushed_[k]];
     const double linear = length(v.linear()),
-                 turning = std::abs(v.turn) * measures_[crushed_[k]].turningReach;
+                 turning = std::abs(v.turn) * bodies.extent[crushed_[k]].turningReach;
     const double most = crushSpeed_[k];
     crushSpeed_[k] = linear > most || turning > most ? -1 : 0;  // from here on: whether it was
     any |= crushSpeed_[k] < 0;
@@ -476,7 +509,7 @@ bool NarrowPhase::stopOnce(const Bodies& bodies, const BroadPhase& broad, double
   for (const LivelyPair& pair : pairs_) {
     const int a = pair.key.a, b = pair.key.b;
     const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
-    const double thin = thinner(a, b);
+    const double thin = thinner(bodies, a, b);
     // What lies ahead after the last impact; before it the ways were other ones.
     const double past = since ? std::max((*since)[a], (*since)[b]) / h : 0;
     auto part = [&](int body, double share) -> Motion {
@@ -489,8 +522,9 @@ bool NarrowPhase::stopOnce(const Bodies& bodies, const BroadPhase& broad, double
       return {now.position + m.linear(), turnedBy(now.turn, m.turn)};
     };
     const Motion wa = part(a, 1 - past), wb = part(b, 1 - past);
-    const double most = length(wa.linear() - wb.linear()) + std::abs(wa.turn) * measures_[a].turningReach +
-                        std::abs(wb.turn) * measures_[b].turningReach;
+    const double most = length(wa.linear() - wb.linear()) +
+                        std::abs(wa.turn) * bodies.extent[a].turningReach +
+                        std::abs(wb.turn) * bodies.extent[b].turningReach;
     if (most <= kSwept * thin) continue;
     const Frame fa = frame(a);
     Frame fb = frame(b);
@@ -510,13 +544,7 @@ bool NarrowPhase::stopOnce(const Bodies& bodies, const BroadPhase& broad, double
 }
 
 void NarrowPhase::endStep(const Bodies& bodies, BroadPhase& broad) {
-  for (int b = 0; b < bodies.count(); ++b) {
-    const Motion& m = bodies.moved[b];
-    travelled_[b] += length(m.linear()) + std::abs(m.turn) * measures_[b].turningReach;
-  }
-  for (std::size_t k = 0; k < calm_.size(); ++k)
-    for (int p = 0; p < calm_[k].count; ++p)  // bring it up to date: it may be used again
-      calm_[k].points[p].gap += gapMoved(bodies, calm_[k], calm_[k].points[p]);
+  for (Contact& contact : calm_) bringUpToDate(bodies, contact);  // it may be used again
   memory_.swap(calm_);
   auto& pairs = broad.pairs();
   for (std::size_t k = 0; k < pairs.size(); ++k) {

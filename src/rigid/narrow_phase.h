@@ -61,24 +61,16 @@ class NarrowPhase {
     Motion velocity;  // at the step's start
     double room = 0;  // how far its points may be from where that takes them
   };
-  /// What is asked of a body's shape all the time, side by side.
-  struct Measures {
-    double turningReach = 0;  // how far from the centre of mass a turn moves anything
-    double thinnest = 0, reach = 0;
-  };
-  /// Largest speed of any point of one against any of the other.
-  double relativeSpeed(const Bodies& bodies, int a, int b) const;
-  double thinner(int a, int b) const;
-  /// Are they surely farther apart than `margin`? Cheap.
-  bool surelyApart(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin) const;
   /// The moment within the sub-step from which contacts are looked for, and what impacts before it have
   /// changed of the two bodies' ways.
   struct Later {
     double time = 0;
     Motion struckA, struckB;
   };
-  void find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
-            const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
+  /// Adds the contacts of a pair whose gap is below `margin`. Gives how far the two are surely apart: 0 where
+  /// there are any.
+  double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
+              const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
   bool stopOnce(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
                 std::vector<Motion>& way);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
@@ -87,9 +79,7 @@ class NarrowPhase {
   std::vector<Contact> calm_, lively_, next_, memory_;
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
-  std::vector<Measures> measures_;
   std::vector<Expected> expected_;
-  std::vector<double> travelled_;  // by body: longest way of any of its points so far, m
   std::vector<char> stirred_;
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs
   std::vector<int> calmFirst_;             // by pair: range in calm_

@@ -34,6 +34,7 @@ int RigidSystem::add(const BodyDef& def) {
   Bodies& bodies = s.bodies;
   const int body = bodies.count();
   bodies.def.push_back(def);
+  bodies.extent.push_back(extentOf(*def.shape));
   bodies.velocity.push_back({def.velocity.x, def.velocity.y, def.spin});
   bodies.moved.push_back({});
   bodies.inverse.push_back({});

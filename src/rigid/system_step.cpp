@@ -54,6 +54,7 @@ void RigidSystem::State::addWalls() {
     def.bounce = walls.bounce;
     def.friction = walls.friction;
     bodies.def.push_back(def);
+    bodies.extent.push_back(extentOf(*def.shape));
     // A wall that runs along itself never leaves: only its velocity counts.
     Motion v;
     (side < 2 ? v.y : v.x) = walls.speeds[side];
@@ -468,7 +469,7 @@ void RigidSystem::State::wrap(int body) {
 
 bool RigidSystem::State::outside(int body) const {
   const Vec2 x = bodies.position[body];
-  const double r = bodies.def[body].shape->reach;
+  const double r = bodies.extent[body].reach;
   const auto open = RigidWalls::Kind::open;
   return (walls.sides[0] == open && x.x < -r) || (walls.sides[1] == open && x.x > walls.width + r) ||
          (walls.sides[2] == open && x.y < -r) || (walls.sides[3] == open && x.y > walls.height + r);
