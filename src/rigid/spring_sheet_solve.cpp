@@ -107,8 +107,12 @@ double SpringSheet::solve(Bodies& bodies) {
   if (conjugateGradients(units * missing, units * enough, scale) > units * enough) keepEnergy(scale);
   const float *changeX = change_.x(), *changeY = change_.y();
   double meanX = 0, meanY = 0;
-  if (free_) {  // seven digits are not enough for its momentum
-    for (int k = 0; k < count; ++k) meanX += mass_[k] * changeX[k], meanY += mass_[k] * changeY[k];
+  if (free_) {  // seven digits are not enough for its momentum, which changes by what is missing of it
+    const double *restX = rest_.x(), *restY = rest_.y();
+    for (int k = 0; k < count; ++k) {
+      meanX += mass_[k] * changeX[k] - restX[k] / scale;
+      meanY += mass_[k] * changeY[k] - restY[k] / scale;
+    }
     meanX /= total_, meanY /= total_;
   }
   double *impulseX = impulse_.x(), *impulseY = impulse_.y();

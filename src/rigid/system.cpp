@@ -174,6 +174,8 @@ void RigidSystem::setSpring(int spring, double length, double stiffness, double 
   def.damping = damping;
 }
 
+void RigidSystem::setSpringSlack(int spring, double slack) { state_->springs.def(spring).slack = slack; }
+
 void RigidSystem::setMotor(int joint, double speed, double limit) {
   state_->joints.setMotor(joint, speed, limit);
 }

@@ -98,6 +98,7 @@ class RigidSystem {
   void setGravityScale(int body, double scale);
   void setMass(int body, double mass, double inertia);
   void setSpring(int spring, double length, double stiffness, double damping);
+  void setSpringSlack(int spring, double slack);
   void setMotor(int joint, double speed, double limit);
   /// A body without mass: where it is at the end of the next step; it pushes, carries and spins what it
   /// meets.

@@ -4,6 +4,13 @@
 
 namespace smokebox {
 
+namespace {
+// A cell counts as turned over below this share of its area,
+constexpr double kTurned = 0.05;
+// and when it is turned back, its springs get their length back within so many seconds.
+constexpr double kRecovery = 0.5;
+}  // namespace
+
 ClothMesh::ClothMesh(const ClothSpec& spec, std::shared_ptr<const BodyShape> particle, std::uint64_t ignore,
                      RigidSystem& system)
     : spec_(spec) {
@@ -37,6 +44,7 @@ ClothMesh::ClothMesh(const ClothSpec& spec, std::shared_ptr<const BodyShape> par
       if (j + 2 < rows) farUp_[k] = join(k, node(i, j + 2), spec.bend, kForever, system);
     }
   whole_.assign(static_cast<std::size_t>(columns - 1) * (rows - 1), 1);
+  slack_.assign(whole_.size(), 0);
 }
 
 ClothMesh::Link ClothMesh::join(int a, int b, double stiffness, double tear, RigidSystem& system) const {
@@ -48,7 +56,7 @@ ClothMesh::Link ClothMesh::join(int a, int b, double stiffness, double tear, Rig
   spring.stiffness = stiffness;
   spring.damping = spec_.damping * stiffness / spec_.stiffness;
   spring.tear = tear;
-  return {system.addSpring(spring), true};
+  return {system.addSpring(spring), true, spring.length, 0};
 }
 
 void ClothMesh::hold(bool held, RigidSystem& system) const {
@@ -70,7 +78,12 @@ bool ClothMesh::isThere(const RigidSystem& system) const {
   return std::any_of(bodies_.begin(), bodies_.end(), [&](int body) { return system.isThere(body); });
 }
 
-void ClothMesh::update(RigidSystem& system) {
+void ClothMesh::update(RigidSystem& system, double dt) {
+  dropTorn(system);
+  loosen(system, dt);
+}
+
+void ClothMesh::dropTorn(RigidSystem& system) {
   bool torn = false;
   for (std::vector<Link>* links : {&right_, &up_, &farRight_, &farUp_, &rising_, &falling_})
     for (Link& link : *links) {
@@ -99,6 +112,45 @@ bool ClothMesh::cellIsWhole(int i, int j) const {
   const int k = node(i, j), columns = spec_.columns();
   if (spec_.shear > 0 && !(rising_[k].there && falling_[k].there)) return false;
   return (right_[k].there || right_[k + columns].there) && (up_[k].there || up_[k + 1].there);
+}
+
+float ClothMesh::slackAt(int i, int j) const {
+  const int cellsX = spec_.cells[0], cellsY = spec_.cells[1];
+  return i < 0 || j < 0 || i >= cellsX || j >= cellsY ? 0 : slack_[i + static_cast<std::size_t>(j) * cellsX];
+}
+
+void ClothMesh::loosen(RigidSystem& system, double dt) {
+  const int columns = spec_.columns(), rows = spec_.rows();
+  const double flat = (spec_.size.x / spec_.cells[0]) * (spec_.size.y / spec_.cells[1]);
+  const bool before = slackened_;
+  slackened_ = false;
+  for (int j = 0; j + 1 < rows; ++j)
+    for (int i = 0; i + 1 < columns; ++i) {
+      const int k = node(i, j);
+      auto at = [&](int node) { return system.position(bodies_[node]); };
+      const double area = 0.5 * cross(at(k + columns + 1) - at(k), at(k + columns) - at(k + 1));
+      float& slack = slack_[i + static_cast<std::size_t>(j) * (columns - 1)];
+      slack = area < kTurned * flat ? 1 : std::max(0.0f, slack - static_cast<float>(dt / kRecovery));
+      slackened_ |= slack > 0;
+    }
+  if (!before && !slackened_) return;
+  auto set = [&](Link& link, float slack) {
+    if (!link.there || link.slack == slack) return;
+    link.slack = slack;
+    system.setSpringSlack(link.spring, slack * link.length);
+  };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int k = node(i, j);
+      const float own = slackAt(i, j), right = std::max(own, slackAt(i, j - 1)),
+                  up = std::max(own, slackAt(i - 1, j));
+      set(right_[k], right);
+      set(up_[k], up);
+      set(rising_[k], own);
+      set(falling_[k], own);
+      set(farRight_[k], std::max({right, slackAt(i + 1, j), slackAt(i + 1, j - 1)}));
+      set(farUp_[k], std::max({up, slackAt(i, j + 1), slackAt(i - 1, j + 1)}));
+    }
 }
 
 void ClothMesh::capture(const RigidSystem& system, int index, ClothPicture& picture) const {

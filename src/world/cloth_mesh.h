@@ -5,6 +5,11 @@
 // A cloth that may tear loses a spring whose strain goes too far, and with a structural spring those that
 // bend over it; a cell is whole as long as both its diagonals are, and not two edges that face each other
 // are gone.
+//
+// A cell that is turned over (seen from behind: a fold) would be at rest like that, for its springs only know
+// lengths, and to turn back it would have to be crushed first. So the springs of such a cell and at it do not
+// push: what is folded hangs like a net, and what pulls turns it back. Then they get their length back little
+// by little.
 #pragma once
 #include <memory>
 #include <vector>
@@ -31,24 +36,31 @@ class ClothMesh {
   void hold(bool held, RigidSystem& system) const;
   void remove(RigidSystem& system) const;
   bool isThere(const RigidSystem& system) const;
-  /// After a step: what has torn.
-  void update(RigidSystem& system);
+  /// After a step: what has torn, and what is turned over.
+  void update(RigidSystem& system, double dt);
   void capture(const RigidSystem& system, int index, ClothPicture& picture) const;
 
  private:
   struct Link {
     int spring = -1;
     bool there = false;
+    double length = 0;
+    float slack = 0;  // share of the length
   };
   int node(int i, int j) const { return i + j * spec_.columns(); }
   Link join(int a, int b, double stiffness, double tear, RigidSystem& system) const;
+  void dropTorn(RigidSystem& system);
   bool cellIsWhole(int i, int j) const;
+  void loosen(RigidSystem& system, double dt);
+  float slackAt(int i, int j) const;
 
   ClothSpec spec_;
   std::vector<int> bodies_;
   // By the node that they start from: to the right and upwards, one and two cells far; and by the cell.
   std::vector<Link> right_, up_, farRight_, farUp_, rising_, falling_;
   std::vector<char> whole_;
+  std::vector<float> slack_;  // by cell: 1 while it is turned over, then less and less
+  bool slackened_ = false;    // one is over 0
 };
 
 }  // namespace smokebox

@@ -29,7 +29,7 @@ void RigidStage::step(const SolidScripts& solids, long step, double dt) {
     }
     throw;
   }
-  for (ClothMesh& cloth : cloths_) cloth.update(system_);
+  for (ClothMesh& cloth : cloths_) cloth.update(system_, dt);
   takeDeparted(end);
   if (inFluid_) placeInFluid(dt);
   keepPast(end, dt);
