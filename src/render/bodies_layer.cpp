@@ -3,6 +3,7 @@
 
 #include "base/maths.h"
 #include "render/body_layers.h"
+#include "render/body_mark.h"
 #include "render/link_shapes.h"
 
 namespace smokebox {
@@ -55,7 +56,7 @@ void BodiesLayer::drawDisk(const BodyPicture& body, const LayerSpec& layer, cons
   palette_.sprites.addSegment(centre, centre + (1 - stroke / radius) * rim, stroke, outline);
 }
 
-/// Its mark is a dot on the way from the centre of mass to the first corner, where that is inside.
+/// Its mark is a spoke from a dot, which is the centre of mass wherever that can be seen.
 void BodiesLayer::drawOutlines(const BodyPicture& body, std::size_t place, const LayerSpec& layer,
                                const PictureFrame& frame) {
   pixels_.resize(body.outlines.size());
@@ -68,32 +69,23 @@ void BodiesLayer::drawOutlines(const BodyPicture& body, std::size_t place, const
   const LinearColor outline = linear(colors.outline, layer.opacity);
   const Vec2 centre = frame.toPixels(body.pose.position), corner = pixels_[0][0];
   const double radius = length(corner - centre);
+  const double stroke = strokeFor(radius, frame);
   Kept& kept = kept_[place];
   if (kept.outlines != pixels_) {
-    kept.mask = painter_.solid(pixels_, strokeFor(radius, frame), std::max(1.2, kThinnestUnits * frame.unit));
+    kept.mask = painter_.solid(pixels_, stroke, std::max(1.2, kThinnestUnits * frame.unit));
     kept.outlines = pixels_;
   }
   palette_.sprites.add(kept.mask, linear(colors.fill, layer.opacity), outline);
-  constexpr double kOut = 0.55;
   if (!layer.mark || radius < kMarkFromPixels) return;
-  const Vec2 at = body.pose.position + kOut * (body.outlines[0][0] - body.pose.position);
-  const double size = std::clamp(0.09 * radius, 1.0, 3.2 * std::max(frame.unit, 0.5));
-  if (contains(body.outlines, at) && roomAt(centre + kOut * (corner - centre)) > 1.5 * size)
-    palette_.sprites.addDisk(centre + kOut * (corner - centre), size, outline);
-}
-
-/// Distance to the nearest edge, in pixels.
-double BodiesLayer::roomAt(Vec2 pixel) const {
-  double nearest2 = 1e30;
-  for (const Outline& outline : pixels_)
-    for (std::size_t k = 0; k < outline.size(); ++k) {
-      const Vec2 a = outline[k], along = outline[(k + 1) % outline.size()] - a;
-      const double size2 = dot(along, along);
-      const double share = size2 > 0 ? std::clamp(dot(pixel - a, along) / size2, 0.0, 1.0) : 0.0;
-      const Vec2 off = pixel - a - share * along;
-      nearest2 = std::min(nearest2, dot(off, off));
+  if (const auto mark = markOf(body.outlines, body.pose)) {
+    const double width = 0.8 * stroke;
+    const Vec2 from = frame.toPixels(mark->from), way = frame.toPixels(mark->to) - from;
+    const double reach = length(way);
+    if (reach > 4 * width) {
+      palette_.sprites.addSegment(from, from + (1 - stroke / reach) * way, width, outline);
+      palette_.sprites.addDisk(from, 1.5 * width, outline);
     }
-  return std::sqrt(nearest2);
+  }
 }
 
 }  // namespace smokebox

@@ -8,7 +8,7 @@
 
 namespace smokebox {
 
-/// Filled shapes with a darker outline, and a mark that turns with them. Masks are kept until a shape moves.
+/// Filled shapes with a darker outline, and a spoke that turns with them. Masks are kept until a shape moves.
 class BodiesLayer {
  public:
   explicit BodiesLayer(Palette& palette);
@@ -18,7 +18,6 @@ class BodiesLayer {
   void drawDisk(const BodyPicture& body, const LayerSpec& layer, const PictureFrame& frame);
   void drawOutlines(const BodyPicture& body, std::size_t place, const LayerSpec& layer,
                     const PictureFrame& frame);
-  double roomAt(Vec2 pixel) const;
 
   struct Kept {
     PixelOutlines outlines;
@@ -40,7 +39,8 @@ class ParticlesLayer {
   Palette& palette_;
 };
 
-/// Zigzags, blue where pressed and red where stretched; an event's pull as a line with a ring at its end.
+/// Zigzags in the colour of their tension, blue where pressed and red where they pull; an event's pull as a
+/// line with a ring at its end.
 class SpringsLayer {
  public:
   explicit SpringsLayer(Palette& palette) : palette_(palette) {}

@@ -7,17 +7,19 @@ namespace smokebox {
 
 namespace {
 // In 1/720 of the picture's height.
-constexpr double kLargestUnits = 30;  // half of the normal of a blow beyond measure
-constexpr double kDotUnits = 5.0;     // radius of its dot
+constexpr double kLargestUnits = 44;  // half of the normal of a blow beyond measure
+constexpr double kDotUnits = 7;       // radius of its dot
+constexpr double kWidthUnits = 5;     // of the normal at the dot; it ends in a point
 constexpr double kRestUnits = 1.5;    // radius of the dot of a contact at rest
 constexpr double kRestOpacity = 0.45;
-constexpr double kGrows = 0.6;      // of the ring, as it fades
-constexpr double kFaintest = 0.06;  // size below which a blow is no more than a contact at rest
+constexpr double kGrows = 0.5;      // of the ring, as it fades
+constexpr double kRingFrom = 0.5;   // size from which a blow has a ring
+constexpr double kFaintest = 0.15;  // size below which a blow is no more than a contact at rest
 }  // namespace
 
 void CollisionsLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
   const Color ink =
-      layer.color.value_or(frame.darkGround ? Color{1.0f, 0.93f, 0.62f} : Color{0.80f, 0.16f, 0.05f});
+      layer.color.value_or(frame.darkGround ? Color{1.0f, 0.85f, 0.30f} : Color{0.80f, 0.16f, 0.05f});
   const Color shade = frame.darkGround ? Color{0, 0, 0} : Color{1, 1, 1};
   const double unit = std::max(frame.unit, 0.4);
   for (const TouchPicture& touch : snapshot.touches) {
@@ -33,15 +35,20 @@ void CollisionsLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, con
     const double opacity = fade * layer.opacity;
     if (!(opacity > 0)) continue;
     const Vec2 normal{touch.normal.x, -touch.normal.y};
-    const double half = kLargestUnits * size * unit, dot = std::max(1.2, kDotUnits * size * unit);
-    const double width = std::max(1.2, 2.6 * size * unit);
+    const double half = kLargestUnits * size * unit, dot = std::max(1.4, kDotUnits * size * unit);
+    const double width = std::max(1.4, kWidthUnits * size * unit);
     const LinearColor color = linear(ink, opacity), halo = linear(shade, 0.5 * opacity);
-    palette_.sprites.addSegment(at - half * normal, at + half * normal, width, color, halo);
+    for (const double side : {-half, half}) {
+      palette_.strokes.add({at, at + side * normal}, {{width + 3, halo}, {2.6, halo}});
+      palette_.strokes.add({at, at + side * normal}, {{width, color}, {0.6, color}});
+    }
     palette_.sprites.addDisk(at, dot + 1.2, halo);
     palette_.sprites.addDisk(at, dot, color);
-    palette_.sprites.addDisk(at, (0.55 + kGrows * (1 - fade)) * half, {}, std::max(1.0, 0.7 * width),
-                             linear(ink, 0.6 * opacity));
+    if (size < kRingFrom) continue;
+    palette_.sprites.addDisk(at, (0.5 + kGrows * (1 - fade)) * half, {}, std::max(1.2, 0.3 * width),
+                             linear(ink, 0.65 * opacity));
   }
+  palette_.strokes.flush();
   palette_.sprites.flush();
 }
 

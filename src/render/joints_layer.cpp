@@ -9,7 +9,7 @@ namespace smokebox {
 
 namespace {
 // In 1/720 of the picture's height.
-constexpr double kPinUnits = 4.6, kWeldUnits = 4.2, kMotorUnits = 13, kRailUnits = 26, kLineUnits = 1.7;
+constexpr double kPinUnits = 4.6, kWeldUnits = 4.2, kMotorUnits = 13, kRailUnits = 170, kLineUnits = 1.7;
 constexpr double kArcFrom = 0.75 * kPi,
                  kArcTo = -0.75 * kPi;  // of a motor; y is down, so it turns to the left
 constexpr double kArrowUnits = 6;
@@ -76,7 +76,7 @@ void JointsLayer::addWeld(const JointPicture& joint, const Ink& ink, const Pictu
   palette_.sprites.addSegment(corners[1], corners[3], width, ink.line);
 }
 
-/// The rail reaches from where the slide began to where it is, and some way beyond.
+/// The rail reaches as far as its limits let it go; without limits it fades out a long way from its start.
 void JointsLayer::addSlide(const JointPicture& joint, const Ink& ink, const PictureFrame& frame) {
   const Vec2 start = frame.toPixels(joint.a);
   const Vec2 along = frame.toPixels(joint.a + joint.axis) - start;
@@ -84,12 +84,19 @@ void JointsLayer::addSlide(const JointPicture& joint, const Ink& ink, const Pict
   if (!(size > 0)) return;
   const Vec2 forward = (1 / size) * along, across = perpendicular(forward);
   const double now = dot(frame.toPixels(joint.b) - start, forward), unit = std::max(frame.unit, 0.5);
-  const double rail = kRailUnits * unit, width = frame.line(kLineUnits), tick = 4 * unit, bar = 8 * unit;
-  const Vec2 from = start + (std::min(now, 0.0) - rail) * forward,
-             to = start + (std::max(now, 0.0) + rail) * forward;
-  palette_.sprites.addSegment(from, to, width, ink.line, ink.halo);
-  for (const Vec2 end : {from, to})
-    palette_.sprites.addSegment(end - tick * across, end + tick * across, width, ink.line, ink.halo);
+  const double width = frame.line(kLineUnits), tick = 5 * unit, bar = 8 * unit;
+  const double fades = std::max(kRailUnits * unit, 1.2 * std::abs(now));
+  const LinearColor none{};
+  for (const double way : {-1.0, 1.0}) {
+    const double limit = way * (way < 0 ? joint.lower : joint.upper) * size;
+    const bool ends = limit < 2 * std::max(frame.width, frame.height);  // not far outside of the picture
+    const Vec2 end = start + way * (ends ? limit : fades) * forward;
+    const LinearColor line = ends ? ink.line : none, halo = ends ? ink.halo : none;
+    palette_.strokes.add({start, end}, {{width + 1.8 * unit, ink.halo}, {width + 1.8 * unit, halo}});
+    palette_.strokes.add({start, end}, {{width, ink.line}, {width, line}});
+    if (ends) palette_.strokes.add({end - tick * across, end + tick * across}, {1.3 * width, ink.line});
+  }
+  palette_.strokes.flush();
   const Vec2 slider = start + now * forward;
   palette_.sprites.addSegment(slider - bar * forward, slider + bar * forward, 3.6 * width, ink.line,
                               ink.halo);

@@ -149,7 +149,7 @@ Mask haloedText(TextPainter& text, const std::string& utf8, int size, FontWeight
 /// The size in pixels of a font of `units` (1/720 of the picture's height), never too small to be read.
 int fontSize(const PictureFrame& frame, double units);
 
-/// Captions at the bottom and the time at the top left.
+/// Captions at the bottom, or at the top, and the time at the top left.
 class TextLayer {
  public:
   explicit TextLayer(Palette& palette) : palette_(palette) {}
@@ -159,6 +159,7 @@ class TextLayer {
  private:
   Palette& palette_;
   std::vector<std::string> keptCaptions_;
+  bool keptAtTop_ = false;
   struct CaptionLine {
     Mask mask;
     int width;

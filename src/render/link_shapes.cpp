@@ -16,7 +16,6 @@ constexpr Color kBodyColors[] = {{0.353f, 0.663f, 0.902f}, {0.957f, 0.635f, 0.34
                                  {0.306f, 0.780f, 0.753f}, {0.953f, 0.561f, 0.698f}, {0.639f, 0.694f, 0.541f},
                                  {0.773f, 0.580f, 0.416f}};
 constexpr Color kPressed{0.29f, 0.56f, 1.0f}, kStretched{1.0f, 0.33f, 0.27f};
-constexpr double kHalfStrain = 0.12;  // at which half of the colour is reached
 
 constexpr double kCoilUnits = 9;    // pixels for a coil at rest, in 1/720 of the picture's height
 constexpr double kWidestUnits = 7;  // of the amplitude at rest
@@ -28,9 +27,15 @@ constexpr int kRopePieces = 28;
 
 Color bodyColor(int index) { return kBodyColors[static_cast<std::size_t>(index) % std::size(kBodyColors)]; }
 
-Color strainColor(double strain, const Color& neutral) {
-  const double share = std::abs(strain) / (std::abs(strain) + kHalfStrain);
-  return mixed(neutral, strain < 0 ? kPressed : kStretched, std::min(share, 1.0));
+Color tensionColor(double tension, double usual, const Color& neutral) {
+  const double share = std::abs(tension) / (std::abs(tension) + 0.5 * usual);
+  return mixed(neutral, tension < 0 ? kPressed : kStretched, share);
+}
+
+Color tensionColor(double tension, const std::array<double, 2>& range, const Color& neutral) {
+  const double zero = std::clamp(0.0, range[0], range[1]), end = tension < zero ? range[0] : range[1];
+  const double share = end == zero ? 0 : std::clamp((tension - zero) / (end - zero), 0.0, 1.0);
+  return mixed(neutral, tension < zero ? kPressed : kStretched, share);
 }
 
 Zigzag zigzag(double rest, double length, double unit) {

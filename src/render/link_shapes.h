@@ -1,5 +1,6 @@
 // The forms in which springs, ropes and motors are drawn, and the colours of what has none of its own.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "base/color.h"
@@ -10,9 +11,11 @@ namespace smokebox {
 /// The colour of the k-th body (particle, cloth) that names none.
 Color bodyColor(int index);
 
-/// Of a spring that is stretched by a share of its length at rest (negative: pressed): blue, then `neutral`
-/// at rest, then red, as far for a stretch as for the same pressure.
-Color strainColor(double strain, const Color& neutral);
+/// Of a spring by its tension, N (negative: it is pressed): blue, then `neutral` at rest, then red, as far
+/// for a pull as for the same pressure. Two thirds of the way at `usual`, and never quite at its end.
+Color tensionColor(double tension, double usual, const Color& neutral);
+/// The same in even steps to the ends of a range, low < high; neutral is zero, or the end that is nearest.
+Color tensionColor(double tension, const std::array<double, 2>& range, const Color& neutral);
 
 /// A spring's zigzag, in pixels. The wire keeps its length: coils flatten as the spring stretches.
 struct Zigzag {

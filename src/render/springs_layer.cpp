@@ -26,9 +26,9 @@ void SpringsLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const 
     const Vec2 from = frame.toPixels(spring.from), to = frame.toPixels(spring.to);
     const double reach = length(to - from), rest = spring.length * frame.scale;
     const Zigzag shape = zigzag(rest, reach, frame.unit);
-    // The stretch and not the tension: one scale for soft and stiff springs alike, the same in every picture.
-    const double strain = rest > 0 ? reach / rest - 1 : spring.tension > 0 ? 1 : 0;
-    const Color color = spring.color ? *spring.color : strainColor(strain, neutral);
+    const Color color = spring.color  ? *spring.color
+                        : layer.range ? tensionColor(spring.tension, *layer.range, neutral)
+                                      : tensionColor(spring.tension, snapshot.usualTension, neutral);
     const double width = (shape.period > 0 ? kWireUnits : kThinWireUnits) * frame.unit;
     records_.insert(records_.end(),
                     {float(from.x), float(from.y), float(to.x), float(to.y), float(shape.straight),

@@ -82,8 +82,15 @@ Mask haloedText(TextPainter& text, const std::string& utf8, int size, FontWeight
 void TextLayer::drawCaptions(const Snapshot& snapshot, const LayerSpec& layer, const PictureFrame& frame) {
   const int size = fontSize(frame, kCaptionUnits);
   const int padX = std::max(2, size * 6 / 10), padY = std::max(1, size * 3 / 10);
-  if (keptCaptions_ != snapshot.captions) {
+  const int edge = std::max(2, static_cast<int>(std::lround((layer.atTop ? 18 : 36) * frame.unit)));
+  // Of the plate below so many lines.
+  const auto bottomOf = [&](std::size_t count) {
+    if (!layer.atTop) return frame.height - edge;
+    return edge + 2 * padY + ascent_ + descent_ + (static_cast<int>(count) - 1) * lineHeight_;
+  };
+  if (keptCaptions_ != snapshot.captions || keptAtTop_ != layer.atTop) {
     keptCaptions_ = snapshot.captions;
+    keptAtTop_ = layer.atTop;
     lines_.clear();
     ascent_ = static_cast<int>(std::lround(0.76 * size));
     descent_ = static_cast<int>(std::lround(0.24 * size));
@@ -93,7 +100,7 @@ void TextLayer::drawCaptions(const Snapshot& snapshot, const LayerSpec& layer, c
     for (const std::string& caption : keptCaptions_)
       for (std::string& line : palette_.text.wrapped(caption, size, FontWeight::regular, most))
         texts.push_back(std::move(line));
-    const int bottom = frame.height - std::max(2, static_cast<int>(std::lround(36 * frame.unit))) - padY;
+    const int bottom = bottomOf(texts.size()) - padY;
     for (std::size_t k = 0; k < texts.size(); ++k) {
       const int width = palette_.text.advance(texts[k], size);
       const int baseline = bottom - descent_ - static_cast<int>(texts.size() - 1 - k) * lineHeight_;
@@ -107,7 +114,7 @@ void TextLayer::drawCaptions(const Snapshot& snapshot, const LayerSpec& layer, c
   const TextColors colors = textColors(layer, frame.darkGround);
   int widest = 0;
   for (const CaptionLine& line : lines_) widest = std::max(widest, line.width);
-  const int bottom = frame.height - std::max(2, static_cast<int>(std::lround(36 * frame.unit)));
+  const int bottom = bottomOf(lines_.size());
   const int top = bottom - 2 * padY - ascent_ - descent_ - static_cast<int>(lines_.size() - 1) * lineHeight_;
   const double middle = frame.width / 2.0;
   palette_.panels.add(middle - widest / 2.0 - padX, top, middle + widest / 2.0 + padX, bottom,

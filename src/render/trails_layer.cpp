@@ -6,8 +6,9 @@
 namespace smokebox {
 
 namespace {
-constexpr double kWidthUnits = 3.2;  // where the thing is now, in 1/720 of the picture's height
-constexpr double kStrongest = 0.75;  // opacity there
+constexpr double kWidthUnits = 4.0;  // where the thing is now, in 1/720 of the picture's height
+constexpr double kStrongest = 0.85;  // opacity there
+constexpr double kFades = 1.4;       // power of the share of its time that it has left
 constexpr double kStep2 = 2.25;      // squared pixels between points: less would not show
 }  // namespace
 
@@ -33,7 +34,7 @@ void TrailsLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const P
       if (near && k + 1 < count) continue;
       const double young = static_cast<double>(k + 1) / static_cast<double>(count);
       points_.push_back(point);
-      looks_.push_back({width * young, linear(color, kStrongest * young * young * layer.opacity)});
+      looks_.push_back({width * young, linear(color, kStrongest * std::pow(young, kFades) * layer.opacity)});
     }
     finish();
   }

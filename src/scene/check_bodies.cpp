@@ -2,6 +2,7 @@
 // groups to `ignore` that have one member only.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
 
@@ -14,6 +15,8 @@ namespace {
 
 constexpr double kSlack = 5e-3;  // of the smaller one's size: what touches does not overlap
 constexpr int kMostWarnings = 8;
+constexpr double kSmallest = 1e-7, kLargest = 1e3;     // of the domain's longer side
+constexpr double kLightest = 1e-12, kHeaviest = 1e12;  // kg
 
 /// A body, a particle or a solid at the start.
 struct Thing {
@@ -126,15 +129,40 @@ struct Checks {
     }
   }
 
+  /// Sizes and masses with which nothing can be reckoned.
+  void checkSizes() {
+    const double domain = std::max(spec.domain.grid.width(), spec.domain.grid.height());
+    for (const Thing& thing : things) {
+      if (thing.body < 0) continue;
+      const BodySpec& body = spec.bodies[thing.body];
+      if (!isFirst(thing)) continue;
+      const double across = std::max(thing.high.x - thing.low.x, thing.high.y - thing.low.y);
+      char size[40];
+      std::snprintf(size, sizeof size, "%.3g m", across);
+      if (!(across >= kSmallest * domain) || !(across <= kLargest * domain))
+        scene.reader().error(markOf(body), nameOf(thing) + " is " + size + " across: too " +
+                                               (across > domain ? "large" : "small") + " for this domain");
+      const double mass = body.mass.value_or(body.density * across * across);
+      if (!(mass >= kLightest) || !(mass <= kHeaviest))
+        scene.reader().error(markOf(body), nameOf(thing) + " has a mass beyond reckoning",
+                             "from 1e-12 to 1e12 kg");
+    }
+  }
+
+  /// The first of the copies of a `repeat`, which are much alike.
+  bool isFirst(const Thing& thing) const {
+    return thing.body == 0 || spec.bodies[thing.body - 1].family != spec.bodies[thing.body].family;
+  }
+
   void checkInside() {
     const double width = spec.domain.grid.width(), height = spec.domain.grid.height();
     int in = 0;
+    std::map<std::string, std::pair<int, int>> outside;  // of each family: its first, and how many
     for (const Thing& thing : things) {
       if (thing.body < 0) continue;
       const BodySpec& body = spec.bodies[thing.body];
       if (thing.high.x <= 0 || thing.high.y <= 0 || thing.low.x >= width || thing.low.y >= height) {
-        scene.reader().error(markOf(body), nameOf(thing) + " starts outside of the domain",
-                             body.particle ? "" : "`position` is where the shape's own (0, 0) is");
+        ++outside.try_emplace(body.family, thing.body, 0).first->second.second;
         continue;
       }
       const double beyond[4] = {-thing.low.x, thing.high.x - width, -thing.low.y, thing.high.y - height};
@@ -148,6 +176,14 @@ struct Checks {
                                "it will be pushed out gently");
         break;
       }
+    }
+    for (const auto& [family, first] : outside) {
+      const BodySpec& body = spec.bodies[first.first];
+      const std::string others =
+          first.second > 1 ? " and " + std::to_string(first.second - 1) + " more of its copies start"
+                           : " starts";
+      scene.reader().error(markOf(body), "`" + body.name + "`" + others + " outside of the domain",
+                           body.particle ? "" : "`position` is where the shape's own (0, 0) is");
     }
   }
 
@@ -193,12 +229,20 @@ struct Checks {
   }
 
   void checkGroups() {
+    constexpr std::size_t kMostGroups = 64;  // a bit each; and one for each cloth
     std::map<std::string, int> members;
-    auto count = [&](const std::vector<std::string>& groups) {
+    const YamlMark* tooMany = nullptr;
+    auto count = [&](const std::vector<std::string>& groups, const YamlMark& mark) {
       for (const std::string& group : groups) ++members[group];
+      if (!tooMany && members.size() + spec.cloths.size() > kMostGroups) tooMany = &mark;
     };
-    for (const BodySpec& body : spec.bodies) count(body.ignore);
-    for (const ClothSpec& cloth : spec.cloths) count(cloth.ignore);
+    for (const BodySpec& body : spec.bodies) count(body.ignore, markOf(body));
+    for (std::size_t k = 0; k < spec.cloths.size(); ++k)
+      count(spec.cloths[k].ignore, scene.find("cloth")->items[k]->mark);
+    if (tooMany)
+      return scene.reader().error(*tooMany, "more than 64 groups in `ignore`, with one for each cloth (" +
+                                                std::to_string(members.size()) + " and " +
+                                                std::to_string(spec.cloths.size()) + ")");
     auto warn = [&](const std::vector<std::string>& groups, const std::string& name, const YamlMark& mark) {
       for (const std::string& group : groups)
         if (members[group] == 1)
@@ -208,9 +252,6 @@ struct Checks {
     for (const BodySpec& body : spec.bodies) warn(body.ignore, body.name, markOf(body));
     for (std::size_t k = 0; k < spec.cloths.size(); ++k)
       warn(spec.cloths[k].ignore, spec.cloths[k].name, scene.find("cloth")->items[k]->mark);
-    constexpr std::size_t kMostGroups = 64;  // a bit each; and one for each cloth
-    if (members.size() + spec.cloths.size() > kMostGroups)
-      scene.reader().error(scene.mark(), "more than 64 groups to ignore and cloths");
   }
 
   void checkCloths() {
@@ -231,6 +272,7 @@ void checkBodies(MapReader& scene, const SceneSpec& spec) {
   if (spec.bodies.empty() && spec.cloths.empty()) return;
   Checks checks{scene, spec, {}};
   checks.place();
+  checks.checkSizes();
   checks.checkInside();
   checks.checkOverlaps();
   checks.checkGroups();

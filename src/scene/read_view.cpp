@@ -19,7 +19,8 @@ enum Option : unsigned {
   color = 32,
   mark = 64,
   length = 128,
-  fade = 256
+  fade = 256,
+  side = 512
 };
 
 struct LayerEntry {
@@ -35,12 +36,12 @@ constexpr LayerEntry kLayers[] = {
     {"speed", LayerKind::speed, opacity | range | bar},
     {"temperature", LayerKind::temperature, opacity | range | bar},
     {"velocity", LayerKind::velocity, opacity | spacing | scale | color},
-    {"caption", LayerKind::caption, opacity | color},
+    {"caption", LayerKind::caption, opacity | color | side},
     {"time", LayerKind::time, opacity | color},
     {"probes", LayerKind::probes, opacity | color},
     {"bodies", LayerKind::bodies, opacity | color | mark},
     {"particles", LayerKind::particles, opacity | color},
-    {"springs", LayerKind::springs, opacity | color},
+    {"springs", LayerKind::springs, opacity | color | range},
     {"joints", LayerKind::joints, opacity | color},
     {"cloth", LayerKind::cloth, opacity | color},
     {"trails", LayerKind::trails, opacity | color | length},
@@ -80,6 +81,12 @@ void readOptions(Reader& reader, const YamlNode& node, const std::string& name, 
   if (allowed & Option::mark) map.boolean("mark", layer.mark);
   if (allowed & Option::length) map.number("length", layer.length, kPositive);
   if (allowed & Option::fade) map.number("fade", layer.fade, kPositive);
+  std::string side;
+  if ((allowed & Option::side) && map.text("side", side)) {
+    layer.atTop = side == "top";
+    if (side != "top" && side != "bottom")
+      reader.error(map.find("side")->mark, "`" + inside(name, "side") + "` must be top or bottom");
+  }
   map.finish();
 }
 

@@ -162,14 +162,16 @@ struct LayerSpec {
   LayerKind kind = LayerKind::smoke;
   bool shown = true;  // false: not until an event shows it
   double opacity = 1;
-  std::optional<std::array<double, 2>> range;  // of a field; without it one range for the whole film is found
-  bool bar = true;                             // colour bar of a field
-  double spacing = 0;                          // velocity arrows: metres between them; 0: chosen
+  std::optional<std::array<double, 2>>
+      range;                   // of a field; without it one range for the whole film is found. Of springs: N
+  bool bar = true;             // colour bar of a field
+  double spacing = 0;          // velocity arrows: metres between them; 0: chosen
   double scale = 0;            // velocity arrows: seconds of motion that an arrow shows; 0: chosen
   std::optional<Color> color;  // arrows, time stamp, caption
-  bool mark = true;            // bodies: a mark on round ones shows how they turn
+  bool mark = true;            // bodies: a spoke shows how they turn
   double length = 1;           // trails: seconds that they go back
   double fade = 0.25;          // collisions: seconds that they stay
+  bool atTop = false;          // captions: at the upper edge
 };
 
 struct CaptionSpec {

@@ -60,6 +60,7 @@ RigidStage::RigidStage(const SceneSpec& spec, const SolidScripts& solids, double
       trailSeconds_ = std::max(trailSeconds_, layer.length);
   }
   usualImpulse_ = findUsualImpulse(spec.gravity);
+  usualTension_ = findUsualTension(spec.gravity);
   trails_.resize(trailSeconds_ > 0 ? bodies_.size() : 0);
   if (inFluid_) placeInFluid(spec.time.step);
 }
@@ -122,6 +123,27 @@ double RigidStage::findUsualImpulse(Vec2 gravity) const {
   const double fall = 0.5 * std::sqrt(length(gravity) * walls_.height);
   const double speed = fall > 0 ? fall : fastest;
   return speed > 0 ? *middle * speed : *middle;
+}
+
+/// What a spring of this scene may carry: the weight that hangs on it, what it is stretched or pressed by at
+/// the start, or what stops the bodies at its ends; the most of all springs, so that colours compare them.
+double RigidStage::findUsualTension(Vec2 gravity) const {
+  double usual = 0, tenth = 0;
+  for (const int number : springs_) {
+    const SpringDef& spring = system_.spring(number);
+    const Vec2 from = system_.anchorPoint(spring.from), to = system_.anchorPoint(spring.to);
+    double load = spring.stiffness * std::fabs(length(to - from) - spring.length);
+    for (const int body : {spring.from.body, spring.to.body}) {
+      if (body < 0) continue;
+      const BodyDef& def = system_.def(body);
+      const double speed = length(system_.velocity(body));
+      load = std::max({load, def.mass * std::fabs(def.gravityScale) * length(gravity),
+                       std::sqrt(spring.stiffness * def.mass) * speed});
+    }
+    usual = std::max(usual, load);
+    tenth = std::max(tenth, 0.1 * spring.stiffness * spring.length);
+  }
+  return usual > 0 ? usual : tenth > 0 ? tenth : 1;
 }
 
 double RigidStage::inertiaOf(const Body& body) const {

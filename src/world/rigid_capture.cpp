@@ -14,7 +14,8 @@ void RigidStage::record(StepFigures& figures) const {
   figures.angularMomentum = totals.angularMomentum;
   figures.energyBodies = totals.kineticEnergy;
   figures.energyPotential = totals.potentialEnergy;
-  figures.contacts = totals.contacts;
+  // Two that have met and parted within the step have touched, too.
+  figures.contacts = std::max(totals.contacts, static_cast<int>(system_.touches().size()));
   figures.overlap = totals.overlap;
   for (const Body& body : bodies_) {
     if (body.spec.particle || !isThere(body)) continue;
@@ -92,13 +93,29 @@ void RigidStage::captureBodies(Snapshot& snapshot) const {
   }
 }
 
+/// By the spring's law: the system knows only what has pulled during a step, and nothing of springs between
+/// things that are held.
+double RigidStage::tensionNow(const SpringDef& spring) const {
+  const auto velocityAt = [&](const Anchor& anchor, Vec2 point) {
+    if (anchor.body < 0) return Vec2{};
+    const Vec2 arm = point - system_.position(anchor.body);
+    return system_.velocity(anchor.body) + system_.spin(anchor.body) * perpendicular(arm);
+  };
+  const Vec2 from = system_.anchorPoint(spring.from), to = system_.anchorPoint(spring.to);
+  const double distance = length(to - from);
+  const Vec2 along = distance > 0 ? (1 / distance) * (to - from) : Vec2{};
+  const double rate = dot(velocityAt(spring.to, to) - velocityAt(spring.from, from), along);
+  return spring.stiffness * (distance - spring.length) + spring.damping * rate;
+}
+
 void RigidStage::captureLinks(Snapshot& snapshot) const {
+  snapshot.usualTension = usualTension_;
   if (snapshot.shows(LayerKind::springs)) {
     auto add = [&](int number, const std::optional<Color>& color, bool pull) {
       if (!system_.springIsThere(number)) return;
       const SpringDef& spring = system_.spring(number);
       snapshot.springs.push_back({system_.anchorPoint(spring.from), system_.anchorPoint(spring.to),
-                                  system_.springTension(number), spring.length, color, pull});
+                                  tensionNow(spring), spring.length, color, pull});
     };
     for (std::size_t k = 0; k < springs_.size(); ++k) add(springs_[k], springColors_[k], false);
     for (const Pull& pull : pulls_) add(pull.spring, {}, true);
@@ -114,8 +131,8 @@ void RigidStage::captureLinks(Snapshot& snapshot) const {
                                                        : Kind::rope;
     const double turn = joint.a.body < 0 ? 0 : system_.angleRad(joint.a.body);
     snapshot.joints.push_back({kind, system_.anchorPoint(joint.a), system_.anchorPoint(joint.b),
-                               transformed(joint.axis, Pose{{}, turn}), joint.length,
-                               joint.motorLimit > 0 ? joint.motorSpeed : 0});
+                               transformed(joint.axis, Pose{{}, turn}), joint.length, joint.lower,
+                               joint.upper, joint.motorLimit > 0 ? joint.motorSpeed : 0});
   }
 }
 

@@ -1,5 +1,6 @@
 #include "world/rigid_stage.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -123,8 +124,11 @@ void RigidStage::placeInFluid(double dt) {
 void RigidStage::keepPast(double time, double dt) {
   if (touchSeconds_ > 0) {
     while (!impacts_.empty() && impacts_.front().time < time - touchSeconds_) impacts_.pop_front();
+    std::erase_if(lastImpacts_, [&](const auto& last) {
+      return last.second.time < time - touchSeconds_ - 0.5 * dt;  // the mark is gone
+    });
     for (const Touch& touch : system_.touches())
-      if (touch.approach > 0) impacts_.push_back({touch, time});
+      if (touch.approach > 0) keepImpact(touch, time);
   }
   const auto most = static_cast<std::size_t>(std::lround(trailSeconds_ / dt)) + 1;
   for (std::size_t k = 0; k < trails_.size(); ++k) {
@@ -135,6 +139,20 @@ void RigidStage::keepPast(double time, double dt) {
     trails_[k].push_back(system_.position(bodies_[k].id));
     if (trails_[k].size() > most) trails_[k].pop_front();
   }
+}
+
+/// Two that scrape along each other or rattle would leave a mark at every step, one upon another: a pair that
+/// has one gets the next when that has faded, or for a blow that is much stronger.
+void RigidStage::keepImpact(const Touch& touch, double time) {
+  constexpr double kStronger = 3;
+  const auto [last, first] = lastImpacts_.try_emplace({touch.a, touch.b}, LastImpact{touch.impulse, time});
+  if (!first) {
+    LastImpact& was = last->second;
+    const bool sameStep = time - was.time < 0.5 * dt_;  // it may touch in several places
+    if (!sameStep && touch.impulse < kStronger * was.impulse) return;
+    was = {sameStep ? std::max(was.impulse, touch.impulse) : touch.impulse, time};
+  }
+  impacts_.push_back({touch, time});
 }
 
 }  // namespace smokebox

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/hash.h"
@@ -85,6 +86,7 @@ class RigidStage {
   bool isThere(const Body& body) const { return body.id >= 0 && system_.isThere(body.id); }
   double massOf(const Body& body) const;
   double findUsualImpulse(Vec2 gravity) const;
+  double findUsualTension(Vec2 gravity) const;
   double inertiaOf(const Body& body) const;
   /// `at` in the coordinates of the outline as it is given; the number is -1 for what is not there.
   std::optional<Anchor> anchorOf(const HoldSpec& hold) const;
@@ -100,11 +102,13 @@ class RigidStage {
   void takeDeparted(double time);
   void placeInFluid(double dt);
   void keepPast(double time, double dt);
+  void keepImpact(const Touch& touch, double time);
 
   /// Where a thing of this box is seen: once, and where it sticks out of periodic sides once more.
   std::vector<Vec2> imagesOf(Vec2 low, Vec2 high) const;
   void captureBodies(Snapshot& snapshot) const;
   void captureLinks(Snapshot& snapshot) const;
+  double tensionNow(const SpringDef& spring) const;
   void captureTouches(double time, Snapshot& snapshot) const;
   void captureTrails(Snapshot& snapshot) const;
 
@@ -135,8 +139,12 @@ class RigidStage {
   bool shapesMoved_ = true;
 
   double touchSeconds_ = 0, trailSeconds_ = 0;  // 0: no layer shows them
-  double usualImpulse_ = 1;
+  double usualImpulse_ = 1, usualTension_ = 1;
   std::deque<KeptTouch> impacts_;
+  struct LastImpact {
+    double impulse, time;
+  };
+  std::map<std::pair<int, int>, LastImpact> lastImpacts_;  // of each pair, while its mark is seen
   std::vector<std::deque<Vec2>> trails_;
 };
 

@@ -62,10 +62,11 @@ struct SpringPicture {
 
 struct JointPicture {
   JointSpec::Kind kind = JointSpec::Kind::pin;
-  Vec2 a, b;          // the points that it joins, world coordinates
-  Vec2 axis;          // of a slide, in the world now
-  double length = 0;  // of a rope
-  double motor = 0;   // speed that it is driven at, rad/s (pin) or m/s (slide); 0: no motor
+  Vec2 a, b;                    // the points that it joins, world coordinates
+  Vec2 axis;                    // of a slide, in the world now
+  double length = 0;            // of a rope
+  double lower = 0, upper = 0;  // of a slide: how far it may go along the axis, m; infinite without limits
+  double motor = 0;             // speed that it is driven at, rad/s (pin) or m/s (slide); 0: no motor
 };
 
 struct ClothPicture {
@@ -114,6 +115,7 @@ struct Snapshot {
   std::vector<ClothPicture> cloths;
   std::vector<TouchPicture> touches;
   double usualImpulse = 1;  // N s: of a blow that is drawn at a middling size
+  double usualTension = 1;  // N: of a spring that is drawn in a strong colour
   std::vector<TrailPicture> trails;
   std::optional<Vec2> followed;  // where the body is that the camera follows
   std::vector<ProbePicture> probes;

@@ -74,6 +74,42 @@ void pressureWithBar(benchmark::State& state) {
   drawFrames(state, wake(1, 0.5), {LayerKind::pressure, LayerKind::solids, LayerKind::caption}, false);
 }
 
+/// A heap of small polygons that all move: triangles to hexagons, `radius` pixels large.
+void movingPolygons(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0)), columns = 100;
+  const double radius = static_cast<double>(state.range(1)) * 4.0 / 1280;
+  Snapshot snapshot;
+  snapshot.grid = {512, 288, 4.0 / 512};
+  const auto place = [&](int k, double time) {
+    BodyPicture& body = snapshot.bodies[k];
+    body.pose = {{(k % columns + 0.5 + 0.3 * std::sin(time + k)) * 4.0 / columns,
+                  (k / columns + 0.5) * 2.25 / (count / columns)},
+                 time + k};
+    const int sides = 3 + k % 4;
+    body.outlines.resize(1);
+    body.outlines[0].resize(sides);
+    for (int m = 0; m < sides; ++m)
+      body.outlines[0][m] =
+          transformed(radius * Vec2{std::cos(2 * kPi * m / sides), std::sin(2 * kPi * m / sides)}, body.pose);
+  };
+  snapshot.bodies.resize(count);
+  for (int k = 0; k < count; ++k) snapshot.bodies[k].index = k;
+  snapshot.view.layers = {layerOf(LayerKind::bodies)};
+  Renderer renderer(1280, 720);
+  Image image;
+  double time = 0;
+  for (int k = 0; k < count; ++k) place(k, time);
+  renderer.draw(snapshot, image);
+  for (auto _ : state) {
+    state.PauseTiming();
+    time += 1.0 / 30;
+    for (int k = 0; k < count; ++k) place(k, time);
+    state.ResumeTiming();
+    renderer.draw(snapshot, image);
+    benchmark::DoNotOptimize(image.rgba.data());
+  }
+}
+
 void pngFile(benchmark::State& state) {
   Snapshot snapshot = wake(3, 1);
   snapshot.view.layers = {layerOf(LayerKind::smoke), layerOf(LayerKind::solids)};
@@ -99,6 +135,13 @@ BENCHMARK(smokeOfThreeColors)
     ->UseRealTime();
 BENCHMARK(movingSolid)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(pressureWithBar)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(movingPolygons)
+    ->ArgNames({"bodies", "radius"})
+    ->Args({5000, 4})
+    ->Args({5000, 7})
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK(pngFile)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

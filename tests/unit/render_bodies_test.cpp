@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
 #include "base/maths.h"
+#include "render/body_mark.h"
 #include "render/cloth_lines.h"
 #include "render/link_shapes.h"
 
@@ -82,19 +84,75 @@ TEST(RenderSpring, IsALineWhereItIsSmall) {
   EXPECT_EQ(zigzag(40, 40, 2).period, 0);  // a large picture has wider lines
 }
 
-TEST(RenderSpring, ColourTellsTheSignOfTheStrain) {
-  // Blue if pressed, red if stretched, the more the stronger; the neutral colour at rest; equally far both
-  // ways.
+TEST(RenderSpring, ColourTellsTheTension) {
+  // Blue if pressed, red where it pulls, the more the stronger; the neutral colour at rest; equally far both
+  // ways. Only the share of what is usual matters, so soft and stiff springs of one scene can be compared.
   const Color neutral{0.5f, 0.5f, 0.5f};
-  EXPECT_EQ(strainColor(0, neutral), neutral);
+  EXPECT_EQ(tensionColor(0, 7, neutral), neutral);
   float before = 0;
-  for (const double strain : {0.02, 0.1, 0.4, 2.0}) {
-    const Color red = strainColor(strain, neutral), blue = strainColor(-strain, neutral);
+  for (const double tension : {0.02, 0.1, 0.4, 2.0, 50.0}) {
+    const Color red = tensionColor(tension, 1, neutral), blue = tensionColor(-tension, 1, neutral);
     EXPECT_GT(red.r, red.b);
     EXPECT_GT(blue.b, blue.r);
     EXPECT_GT(red.r - red.b, before);
     EXPECT_NEAR((red.r - neutral.r) / 0.5f, (blue.b - neutral.b) / 0.5f, 1e-6);
+    EXPECT_EQ(tensionColor(30 * tension, 30, neutral), red);
     before = red.r - red.b;
+  }
+}
+
+TEST(RenderSpring, ColourFillsItsRange) {
+  // With a range the colour grows evenly from zero to either end and stays there; a range of one sign begins
+  // at its end that is nearest to zero.
+  const Color neutral{0.5f, 0.5f, 0.5f};
+  const std::array<double, 2> range{-2, 8};
+  EXPECT_EQ(tensionColor(0, range, neutral), neutral);
+  const Color most = tensionColor(8, range, neutral), half = tensionColor(4, range, neutral);
+  EXPECT_NEAR(half.g - neutral.g, 0.5 * (most.g - neutral.g), 1e-6);
+  EXPECT_EQ(tensionColor(100, range, neutral), most);
+  const Color least = tensionColor(-2, range, neutral);
+  EXPECT_GT(least.b, least.r);
+  EXPECT_EQ(tensionColor(-9, range, neutral), least);
+  const std::array<double, 2> pulls{2, 8};
+  EXPECT_EQ(tensionColor(2, pulls, neutral), neutral);
+  EXPECT_EQ(tensionColor(8, pulls, neutral), most);
+}
+
+/// A polygon in its own coordinates, laid into the world.
+std::vector<Outline> laid(Outline own, const Pose& pose) { return {transformed(own, pose)}; }
+
+TEST(RenderBodies, MarkIsASpokeAlongTheirAxis) {
+  // A box's mark goes from its centre of mass to the middle of its right edge, and turns with it.
+  const Outline box{{-0.3, -0.1}, {0.3, -0.1}, {0.3, 0.1}, {-0.3, 0.1}};
+  for (const double degree : {0.0, 33.0, 90.0, 200.0}) {
+    const Pose pose{{2, 1}, radians(degree)};
+    const auto mark = markOf(laid(box, pose), pose);
+    ASSERT_TRUE(mark);
+    EXPECT_NEAR(length(mark->from - Vec2{2, 1}), 0, 1e-12) << degree;
+    EXPECT_NEAR(length(mark->to - transformed(Vec2{0.3, 0}, pose)), 0, 1e-12) << degree;
+  }
+}
+
+TEST(RenderBodies, MarkOfAHookIsInsideOfIt) {
+  // Where the centre of mass is outside of the body, or its part there is thin, the mark is the longest line
+  // across it, the same one at each angle.
+  const Outline hook{{0, 0}, {1, 0}, {1, 0.2}, {0.2, 0.2}, {0.2, 0.8}, {1, 0.8}, {1, 1}, {0, 1}};
+  const Vec2 centre{0.38, 0.5};
+  Outline own = hook;
+  for (Vec2& p : own) p = p - centre;
+  ASSERT_FALSE(contains({own}, {0, 0}));
+  const auto first = markOf({own}, Pose{});
+  ASSERT_TRUE(first);
+  EXPECT_NEAR(first->to.x, 0.62, 1e-12);
+  EXPECT_GT(length(first->to - first->from), 0.7);
+  for (int k = 0; k < 40; ++k) {
+    const Pose pose{{0.1 * k, -0.3}, 0.17 * k};
+    const auto mark = markOf(laid(own, pose), pose);
+    ASSERT_TRUE(mark);
+    EXPECT_NEAR(length(mark->from - transformed(first->from, pose)), 0, 1e-9) << k;
+    EXPECT_NEAR(length(mark->to - transformed(first->to, pose)), 0, 1e-9) << k;
+    const Vec2 way = mark->to - mark->from;
+    EXPECT_TRUE(contains(laid(own, pose), mark->from) && contains(laid(own, pose), mark->from + 0.99 * way));
   }
 }
 
