@@ -11,40 +11,72 @@ using Lanes = ContactBlocks::Lanes;
 constexpr int kColours = 64;
 // So few contacts would leave most lanes empty: they are solved one by one.
 constexpr int kFew = 24;
+// Within a colour: those that bear or not, of two points or one, for blocks are done, or left out, as a
+// whole.
+constexpr int kKinds = 4;
+// A block that parted faster than it needs by so many times what the last sweep changed is left out.
+constexpr double kSpare = 4;
 
 struct Motions {
   Lanes x, y, turn;
 };
 
+typedef double Four __attribute__((vector_size(32)));
+
 /// Four bodies' motions, one a lane.
+inline void gatherFour(const Motion* from, const int* index, Four& x, Four& y, Four& turn) {
+  const Four r0 = *reinterpret_cast<const Four*>(from + index[0]);
+  const Four r1 = *reinterpret_cast<const Four*>(from + index[1]);
+  const Four r2 = *reinterpret_cast<const Four*>(from + index[2]);
+  const Four r3 = *reinterpret_cast<const Four*>(from + index[3]);
+  const Four s0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6),
+             s1 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
+  const Four t0 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7),
+             t1 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
+  x = __builtin_shufflevector(s0, s1, 0, 1, 4, 5);
+  y = __builtin_shufflevector(t0, t1, 0, 1, 4, 5);
+  turn = __builtin_shufflevector(s0, s1, 2, 3, 6, 7);
+}
+
+inline Lanes joined(Four low, Four high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline Four low(Lanes a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+inline Four high(Lanes a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
+
+/// Eight bodies' motions, one a lane.
 inline Motions gather(const Motion* from, const int* index) {
-  const Lanes r0 = *reinterpret_cast<const Lanes*>(from + index[0]);
-  const Lanes r1 = *reinterpret_cast<const Lanes*>(from + index[1]);
-  const Lanes r2 = *reinterpret_cast<const Lanes*>(from + index[2]);
-  const Lanes r3 = *reinterpret_cast<const Lanes*>(from + index[3]);
-  const Lanes s0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6),
-              s1 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
-  const Lanes t0 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7),
-              t1 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-  return {__builtin_shufflevector(s0, s1, 0, 1, 4, 5), __builtin_shufflevector(t0, t1, 0, 1, 4, 5),
-          __builtin_shufflevector(s0, s1, 2, 3, 6, 7)};
+  Four x[2], y[2], turn[2];
+  gatherFour(from, index, x[0], y[0], turn[0]);
+  gatherFour(from, index + 4, x[1], y[1], turn[1]);
+  return {joined(x[0], x[1]), joined(y[0], y[1]), joined(turn[0], turn[1])};
+}
+
+inline void scatterFour(Motion* to, const int* index, int bits, Four x, Four y, Four turn) {
+  const Four zero = {0, 0, 0, 0};
+  const Four s0 = __builtin_shufflevector(x, y, 0, 4, 1, 5), s1 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+  const Four t0 = __builtin_shufflevector(turn, zero, 0, 4, 1, 5),
+             t1 = __builtin_shufflevector(turn, zero, 2, 6, 3, 7);
+  if (bits & 1) *reinterpret_cast<Four*>(to + index[0]) = __builtin_shufflevector(s0, t0, 0, 1, 4, 5);
+  if (bits & 2) *reinterpret_cast<Four*>(to + index[1]) = __builtin_shufflevector(s0, t0, 2, 3, 6, 7);
+  if (bits & 4) *reinterpret_cast<Four*>(to + index[2]) = __builtin_shufflevector(s1, t1, 0, 1, 4, 5);
+  if (bits & 8) *reinterpret_cast<Four*>(to + index[3]) = __builtin_shufflevector(s1, t1, 2, 3, 6, 7);
 }
 
 /// Lanes whose bit is not set are left alone: their body does not move, and may be in several lanes.
 inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motions& m) {
-  const Lanes zero = {0, 0, 0, 0};
-  const Lanes s0 = __builtin_shufflevector(m.x, m.y, 0, 4, 1, 5),
-              s1 = __builtin_shufflevector(m.x, m.y, 2, 6, 3, 7);
-  const Lanes t0 = __builtin_shufflevector(m.turn, zero, 0, 4, 1, 5),
-              t1 = __builtin_shufflevector(m.turn, zero, 2, 6, 3, 7);
-  if (bits & 1) *reinterpret_cast<Lanes*>(to + index[0]) = __builtin_shufflevector(s0, t0, 0, 1, 4, 5);
-  if (bits & 2) *reinterpret_cast<Lanes*>(to + index[1]) = __builtin_shufflevector(s0, t0, 2, 3, 6, 7);
-  if (bits & 4) *reinterpret_cast<Lanes*>(to + index[2]) = __builtin_shufflevector(s1, t1, 0, 1, 4, 5);
-  if (bits & 8) *reinterpret_cast<Lanes*>(to + index[3]) = __builtin_shufflevector(s1, t1, 2, 3, 6, 7);
+  scatterFour(to, index, bits, low(m.x), low(m.y), low(m.turn));
+  scatterFour(to, index + 4, bits >> 4, high(m.x), high(m.y), high(m.turn));
 }
 
 inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
+inline double largestOf(Lanes a) {
+  const Four lower = low(a), upper = high(a), four = lower > upper ? lower : upper;
+  const Four turned = __builtin_shufflevector(four, four, 2, 3, 0, 1), two = four > turned ? four : turned;
+  return std::max(two[0], two[1]);
+}
+inline double smallestOf(Lanes a) { return -largestOf(-a); }
 
 }  // namespace
 
@@ -54,9 +86,11 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
   used_.assign(bodies.count(), 0);
   colour_.resize(count);
   place_.assign(count, -1);
-  start_.assign(kColours + 1, 0);
+  start_.assign(kKinds * kColours + 1, 0);
+  kind_.resize(count);
   rest.clear();
   blocks_.clear();
+  points_ = 0;
   if (count <= kFew) {
     for (int k = 0; k < count; ++k) rest.push_back(k);
     return;
@@ -80,21 +114,26 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
       colour_[k] = colour;
       if (movesA) used_[c.a] |= std::uint64_t{1} << colour;
       if (movesB) used_[c.b] |= std::uint64_t{1} << colour;
-      ++start_[colour + 1];
+      kind_[k] = kKinds * colour + (bears ? 0 : 2) + (c.count == 2 ? 0 : 1);
+      ++start_[kind_[k] + 1];
     }
   // Each colour begins a new block.
   std::size_t blocks = 0;
   for (int colour = 0; colour < kColours; ++colour) {
-    const int lanes = start_[colour + 1];
-    start_[colour] = static_cast<int>(blocks) * kLanes;
-    blocks += (lanes + kLanes - 1) / kLanes;
+    int lane = static_cast<int>(blocks) * kLanes;
+    for (int kind = kKinds * colour; kind < kKinds * (colour + 1); ++kind) {
+      const int lanes = start_[kind + 1];
+      start_[kind] = lane;
+      lane += lanes;
+    }
+    blocks = (lane + kLanes - 1) / kLanes;
   }
   blocks_.assign(blocks, Block{});
   for (Block& block : blocks_)
     for (int l = 0; l < kLanes; ++l) block.contact[l] = -1;
   for (int k = 0; k < count; ++k) {
     if (colour_[k] < 0) continue;
-    const int at = start_[colour_[k]]++;
+    const int at = start_[kind_[k]]++;
     place_[k] = at;
     Block& block = blocks_[at / kLanes];
     const int l = at % kLanes;
@@ -102,6 +141,7 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
     block.a[l] = c.a;
     block.b[l] = c.b;
     block.contact[l] = k;
+    block.count = std::max(block.count, c.count);
     if (bodies.moves(c.a)) block.storeA |= 1 << l;
     if (bodies.moves(c.b)) block.storeB |= 1 << l;
     block.nx[l] = c.normal.x;
@@ -123,17 +163,19 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
       to.massN[l] = from.massN;
       to.massT[l] = from.massT;
       to.impulseN[l] = from.impulseN;
-      to.total[l] = -from.impulseN;  // which the first sweep counts, but belongs to the step before
+      block.total[l] -= from.impulseN;  // which the first sweep counts, but belongs to the step before
       to.impulseT[l] = from.impulseT;
     }
   }
+  for (const Block& block : blocks_) points_ += kLanes * block.count;
 }
 
 void ContactBlocks::warmStart(Bodies& bodies) const {
   Motion* velocity = bodies.velocity.data();
   for (const Block& block : blocks_) {
     Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
-    for (const Point& p : block.points) {
+    for (int k = 0; k < block.count; ++k) {
+      const Point& p = block.points[k];
       // Tangent: the normal turned by 90 degrees counterclockwise.
       const Lanes px = block.nx * p.impulseN - block.ny * p.impulseT,
                   py = block.ny * p.impulseN + block.nx * p.impulseT;
@@ -155,18 +197,21 @@ double ContactBlocks::solve(Bodies& bodies, double h, bool first) {
   const Lanes rate = Lanes{} + 1 / h;
   Lanes largest{};
   for (Block& block : blocks_) {
+    if (!first && block.spare > kSpare * change_) continue;
     Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
     const Motions da = gather(moved, block.a), db = gather(moved, block.b);
     const Lanes nx = block.nx, ny = block.ny;
     const Lanes apart = nx * (db.x - da.x) + ny * (db.y - da.y);
-    Lanes deepest{};
-    for (Point& p : block.points) {
-      if (first) p.total += p.impulseN;  // what the last sub-step came to
+    Lanes deepest{}, least = Lanes{} + 1e300;
+    for (int k = 0; k < block.count; ++k) {
+      Point& p = block.points[k];
+      if (first) block.total += p.impulseN;  // what the last sub-step came to
       const Lanes gap = p.gap + apart + db.turn * p.armBN - da.turn * p.armAN;
       deepest = smaller(deepest, gap);
       const Lanes allowed = larger(gap, Lanes{}) * rate;
       const Lanes vn = nx * (vb.x - va.x) + ny * (vb.y - va.y) + vb.turn * p.armBN - va.turn * p.armAN;
-      const Lanes total = larger(p.impulseN - p.massN * (vn + allowed), Lanes{});
+      const Lanes parts = vn + allowed;
+      const Lanes total = larger(p.impulseN - p.massN * parts, Lanes{});
       const Lanes change = total - p.impulseN;
       p.impulseN = total;
       va.x -= block.inverseA * nx * change;
@@ -175,10 +220,10 @@ double ContactBlocks::solve(Bodies& bodies, double h, bool first) {
       vb.x += block.inverseB * nx * change;
       vb.y += block.inverseB * ny * change;
       vb.turn += block.inertiaB * p.armBN * change;
-      const Lanes size = change < 0 ? -change : change;
-      // change / massN is the change of velocity; lanes without a point have neither.
-      const Lanes shift = p.massN > 0 ? size / p.massN : Lanes{};
-      largest = larger(largest, shift);
+      // The change of the velocity: all that was amiss, or less where the contact lets go.
+      const Lanes amiss = parts < 0 ? -parts : parts;
+      largest = larger(largest, change != 0 ? amiss : Lanes{});
+      least = smaller(least, p.massN > 0 ? (total > 0 ? Lanes{} : parts) : Lanes{} + 1e300);
 
       const Lanes vt = nx * (vb.y - va.y) - ny * (vb.x - va.x) + vb.turn * p.armBT - va.turn * p.armAT;
       const Lanes most = block.friction * p.impulseN;
@@ -192,13 +237,13 @@ double ContactBlocks::solve(Bodies& bodies, double h, bool first) {
       vb.y += block.inverseB * nx * slide;
       vb.turn += block.inertiaB * p.armBT * slide;
     }
-    if (first) block.deepest = std::min(std::min(deepest[0], deepest[1]), std::min(deepest[2], deepest[3]));
+    if (first) block.deepest = smallestOf(deepest);
+    block.spare = smallestOf(least);
     scatter(velocity, block.a, block.storeA, va);
     scatter(velocity, block.b, block.storeB, vb);
   }
-  double result = 0;
-  for (int l = 0; l < kLanes; ++l) result = std::max(result, largest[l]);
-  return result;
+  change_ = largestOf(largest);
+  return change_;
 }
 
 void ContactBlocks::separate(Bodies& bodies, double slop, double share, double most) const {
@@ -208,11 +253,12 @@ void ContactBlocks::separate(Bodies& bodies, double slop, double share, double m
     if (block.deepest >= -slop) continue;
     Motions da = gather(moved, block.a), db = gather(moved, block.b);
     bool any = false;
-    for (const Point& p : block.points) {
+    for (int k = 0; k < block.count; ++k) {
+      const Point& p = block.points[k];
       const Lanes gap =
           p.gap + block.nx * (db.x - da.x) + block.ny * (db.y - da.y) + db.turn * p.armBN - da.turn * p.armAN;
       const Lanes overlap = smaller(larger(-share * gap, Lanes{}), cap) * p.massN;
-      if (!(overlap[0] > 0 || overlap[1] > 0 || overlap[2] > 0 || overlap[3] > 0)) continue;
+      if (!(largestOf(overlap) > 0)) continue;
       any = true;
       da.x -= block.inverseA * block.nx * overlap;
       da.y -= block.inverseA * block.ny * overlap;
@@ -231,8 +277,9 @@ void ContactBlocks::readLane(const Block& block, int lane, Contact& contact) {
   for (int p = 0; p < contact.count; ++p) {
     contact.points[p].impulseN = block.points[p].impulseN[lane];
     contact.points[p].impulseT = block.points[p].impulseT[lane];
-    contact.total += block.points[p].total[lane] + block.points[p].impulseN[lane];
+    contact.total += block.points[p].impulseN[lane];
   }
+  contact.total += block.total[lane];
 }
 
 void ContactBlocks::drop(int index, Contact& contact) {
@@ -240,6 +287,7 @@ void ContactBlocks::drop(int index, Contact& contact) {
   Block& block = blocks_[place_[index] / kLanes];
   const int l = place_[index] % kLanes;
   readLane(block, l, contact);
+  block.total[l] = 0;
   for (Point& p : block.points) p.massN[l] = p.massT[l] = p.impulseN[l] = p.impulseT[l] = 0;
   block.contact[l] = -1;
   place_[index] = -1;

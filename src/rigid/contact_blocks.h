@@ -14,14 +14,15 @@ namespace smokebox {
 
 class ContactBlocks {
  public:
-  static constexpr int kLanes = 4;
-  typedef double Lanes __attribute__((vector_size(32)));
+  static constexpr int kLanes = 8;
+  typedef double Lanes __attribute__((vector_size(64)));
 
   /// Colours the contacts and lays them out; `down`: along gravity, of length 1, or (0, 0). Those that find
   /// no colour are listed in `rest`.
   void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest, Vec2 down);
   bool empty() const { return blocks_.empty(); }
-  std::size_t size() const { return blocks_.size(); }
+  /// Points that a sweep solves, empty lanes too.
+  long points() const { return points_; }
 
   /// Adds the impulses to the velocities.
   void warmStart(Bodies& bodies) const;
@@ -42,20 +43,25 @@ class ContactBlocks {
   static void readLane(const Block& block, int lane, Contact& contact);
   struct Point {
     Lanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
-    Lanes gap, massN, massT, impulseN, impulseT, total;
+    Lanes gap, massN, massT, impulseN, impulseT;
   };
   struct alignas(64) Block {
     int a[kLanes], b[kLanes];
     int contact[kLanes];          // -1: empty lane
     std::uint8_t storeA, storeB;  // bits: the lane's body moves
+    int count;                    // points of its contacts: 1 or 2
     double deepest;               // smallest gap in the last first sweep
+    double spare;  // all parted faster than they need by so much in the last sweep, m/s; 0: none
     Lanes nx, ny, friction;
+    Lanes total;  // N s along the normal so far in this step, but for the last sub-step
     Lanes inverseA, inertiaA, inverseB, inertiaB;
     Point points[2];
   };
   std::vector<Block> blocks_;
-  std::vector<std::uint64_t> used_;  // colours at each body
-  std::vector<int> colour_, place_;  // by contact: colour; block * kLanes + lane, or -1
+  long points_ = 0;
+  double change_ = 0;                       // of the last sweep
+  std::vector<std::uint64_t> used_;         // colours at each body
+  std::vector<int> colour_, kind_, place_;  // by contact: colour; block * kLanes + lane, or -1
   std::vector<int> order_, start_;
 };
 

@@ -290,7 +290,7 @@ double RigidSystem::State::sweep(double h, bool first) {
 void RigidSystem::State::solveContacts(double h) {
   warmStartAll(h);
   auto points = [&] {
-    return 1 + 8 * static_cast<long>(blocks.size() + spare.size() + narrow.lively().size());
+    return 1 + blocks.points() + 8 * static_cast<long>(spare.size() + narrow.lively().size());
   };
   // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
   const bool few = points() <= kFewPoints && blocks.empty() && springs.empty() && joints.empty();
