@@ -36,6 +36,19 @@ class ContactBlocks {
   void drop(int index, Contact& contact);
   /// Copies the impulses back, the last ones and their totals; contacts that were dropped keep theirs.
   void readBack(std::vector<Contact>& contacts) const;
+  /// visit(impulses, effective masses, kLanes) for the points' normals and tangents, in a fixed order; who
+  /// changes them brings the velocities along.
+  template <class Visit>
+  void eachImpulse(Visit&& visit) {
+    for (Block& block : blocks_) {
+      block.spare = 0;
+      for (int k = 0; k < block.count; ++k) {
+        Point& p = block.points[k];
+        visit(reinterpret_cast<double*>(&p.impulseN), reinterpret_cast<const double*>(&p.massN), kLanes);
+        visit(reinterpret_cast<double*>(&p.impulseT), reinterpret_cast<const double*>(&p.massT), kLanes);
+      }
+    }
+  }
   std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
 
  private:

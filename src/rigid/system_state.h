@@ -4,6 +4,7 @@
 
 #include "rigid/bodies.h"
 #include "rigid/broad_phase.h"
+#include "rigid/conjugate_sweeps.h"
 #include "rigid/contact_blocks.h"
 #include "rigid/impacts.h"
 #include "rigid/joint_set.h"
@@ -79,6 +80,7 @@ struct RigidSystem::State {
   std::vector<Contact> spare;   // those
   std::vector<int> bouncing;    // calm contacts that may bounce
   std::vector<Contact*> bouncers;
+  ConjugateSweeps conjugate;
   Impacts impact;
   SpringSet springs;
   JointSet joints;

@@ -20,6 +20,8 @@ constexpr long kManySweeps = 6000, kManySweepsOfFew = 20000, kTwoSweeps = 30000;
 constexpr double kSettled = 1e-3;
 // ... or by this share of what the first sweep changed beyond that: of impacts.
 constexpr double kSettledShare = 1e-2;
+// So many sweeps are made before the further ones are drawn along a conjugate direction.
+constexpr int kPlainSweeps = 3;
 // Both are this much less for a few points.
 constexpr double kSettledFew = 1e-8;
 constexpr long kFewPoints = 240;
@@ -296,13 +298,16 @@ void RigidSystem::State::solveContacts(double h) {
   const bool few = points() <= kFewPoints && blocks.empty() && springs.empty() && joints.empty();
   const double care = few ? kSettledFew : 1;
   double settled = care * kSettled * (1 + 1e-3 * points()) * h * length(gravity) + care * 1e-9;
+  const bool accelerates = !few && springs.empty() && joints.empty();
   stirred = false;
   prepare(bodies, spare, h);
   long left = few ? kManySweepsOfFew : kManySweeps;
   for (int round = 0; round < 3; ++round) {
     prepare(bodies, narrow.lively(), h);
     const long work = points();
+    conjugate.restart();
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
+      if (accelerates && sweeps >= kPlainSweeps) conjugate.remember(bodies, blocks, spare, narrow.lively());
       const double change = sweep(h, round == 0 && sweeps == 1);
       left -= work;
       if (sweeps == 1)
@@ -310,6 +315,8 @@ void RigidSystem::State::solveContacts(double h) {
             std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
       if (change <= settled) break;
       if (left < work && (sweeps > 1 || work > kTwoSweeps)) break;
+      if (accelerates && sweeps >= kPlainSweeps)
+        conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
     }
     findWays(h, false);
     giveBackSpare();
