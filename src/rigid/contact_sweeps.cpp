@@ -104,6 +104,10 @@ double solve(Bodies& bodies, std::vector<Contact>& contacts) {
       push(n, p, by);
       if (p.massN > 0) largest = std::max(largest, std::abs(by) / p.massN);
     };
+    auto isIdle = [&](const ContactPoint& p) {
+      return p.impulseN == 0 && p.impulseT == 0 && speed(n, p) + p.allowed >= 0;
+    };
+    if (isIdle(contact.points[0]) && (contact.count == 1 || isIdle(contact.points[1]))) continue;
     if (areTwo(contact)) {
       ContactPoint &p = contact.points[0], &q = contact.points[1];
       const double* k = contact.response;
