@@ -11,32 +11,39 @@ namespace smokebox {
 
 /// By slot; a hole is a spring that does nothing.
 struct SpringLaws {
-  std::vector<double> length, push;  // m: longer than that it pulls, shorter than that it pushes
+  std::vector<double> length;  // m: longer than that it pulls
+  std::vector<float> slack;    // m: shorter by that it pushes
   // bias = perStretch stretch + perRate rate of the last sub-step; hardness, and (w h)^2.
-  std::vector<double> perStretch, perRate, hardness, squared;
+  std::vector<float> perStretch, perRate, hardness, squared;
+  bool rates = false;  // a perRate is not 0
 
   void assign(int slots);
   void set(int slot, const SpringDef& def, double inertia, double h);
 };
 
-/// Of up to kMost springs at once: where their second ends are from the first ones, and how much of that came
-/// in the last sub-step.
-struct SpringStretch {
-  static constexpr int kMost = 128;
-  double x[kMost], y[kMost], movedX[kMost], movedY[kMost];
-  double biasX[kMost], biasY[kMost];
+/// x and y of a field at the first and at the second ends of springs, in their order.
+struct SpringEnds {
+  const double *ax, *ay, *bx, *by;
+  double x(int k) const { return bx[k] - ax[k]; }
+  double y(int k) const { return by[k] - ay[k]; }
+};
 
-  /// Of `count` springs from `slot` on: their biases, and their matrices into `rows`, for a unit of
-  /// mass of `mass`. x, y: the lines' directions from then on.
-  void findRows(const SpringLaws& laws, int slot, int count, double h, double hBefore, double mass,
-                SpringMatrices& rows);
+/// Up to kMost springs at once, from slot `slot` on: where they are, how they moved within the last sub-step,
+/// and the velocities that they start with.
+struct SpringRows {
+  static constexpr int kMost = 128;
+  SpringEnds place, moved, velocity;
+  double h, hBefore, mass;  // s; of a unit of mass in the matrices, kg
+  // Out: the lines' directions; bias + matrix (vb - va).
+  double x[kMost], y[kMost], pullX[kMost], pullY[kMost];
+
+  void find(const SpringLaws& laws, int slot, int count, SpringMatrices& out);
 
  private:
-  /// Adds the rows across.
-  void stiffenAcross(int slot, int count, const SpringLaws& laws, double h, double perSecond, double perMass,
-                     SpringMatrices& rows);
+  void addRates(const SpringLaws& laws, int slot, int count);
+  void stiffenAcross(const SpringLaws& laws, int slot, int count, SpringMatrices& out);
 
-  double inverse_[kMost], stretch_[kMost], across_[kMost];
+  double inverse_[kMost], stretch_[kMost], holds_[kMost], across_[kMost];
 };
 
 }  // namespace smokebox

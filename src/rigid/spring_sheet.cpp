@@ -53,7 +53,7 @@ void SpringSheet::layOut(const std::vector<int>& springs, const std::vector<Spri
   mass_.assign(bands_.nodes(), 0), inverse_.assign(bands_.nodes(), 0);
   share_.assign(bands_.nodes(), 0), inverseShare_.assign(bands_.nodes(), 0);
   for (NodeField<double>* each :
-       {&place_, &moved_, &impulse_, &biases_, &velocity_, &rest_, &made_, &product_, &left_})
+       {&place_, &moved_, &impulse_, &pulls_, &velocity_, &rest_, &made_, &product_, &left_})
     bands_.makeField(*each);
   for (NodeField<float>* each : {&missing_, &direction_, &step_, &change_}) bands_.makeField(*each);
   settled_ = false;
@@ -104,8 +104,8 @@ void SpringSheet::beginStep(const std::vector<Spring>& springs, const Bodies& bo
 
 void SpringSheet::warmStart(Bodies& bodies, double h, double hBefore) {
   hBefore_ = hBefore;
-  settled_ = false;
   double *x = place_.x(), *y = place_.y(), *movedX = moved_.x(), *movedY = moved_.y();
+  double *velocityX = velocity_.x(), *velocityY = velocity_.y();
   const double *impulseX = impulse_.x(), *impulseY = impulse_.y();
   for (std::size_t k = 0; k < body_.size(); ++k) {
     const Vec2 now = bodies.positionNow(body_[k]);
@@ -116,60 +116,59 @@ void SpringSheet::warmStart(Bodies& bodies, double h, double hBefore) {
     fresh_[k] = 0;
     v.x += inverse_[k] * impulseX[k];
     v.y += inverse_[k] * impulseY[k];
+    velocityX[k] = v.x, velocityY[k] = v.y;
   }
   h_ = h;
+  settled_ = false;
   findRows();
 }
 
 void SpringSheet::findRows() {
-  bands_.makeField(biases_);
-  for (int from = 0; from < bands_.nodes(); from += SpringStretch::kMost) {
-    const int to = from + SpringStretch::kMost;
+  bands_.makeField(pulls_);
+  SpringRows rows;
+  rows.h = h_, rows.hBefore = hBefore_, rows.mass = unit_;
+  for (int from = 0; from < bands_.nodes(); from += SpringRows::kMost)
     for (const SpringBands::Band& band : bands_.bands()) {
-      const int begin = std::max(from, band.first), end = std::min(to, band.last);
-      if (begin < end) findRowsOfBand(band, begin, end - begin);
+      const int begin = std::max(from, band.first), end = std::min(from + SpringRows::kMost, band.last);
+      if (begin >= end) continue;
+      const int count = end - begin, next = begin + band.offset;
+      auto ends = [&](const NodeField<double>& field) {
+        return SpringEnds{field.x() + begin, field.y() + begin, field.x() + next, field.y() + next};
+      };
+      rows.place = ends(place_), rows.moved = ends(moved_), rows.velocity = ends(velocity_);
+      rows.find(laws_, band.slot + begin, count, matrices_);
+      double *x = pulls_.x(), *y = pulls_.y();
+#pragma omp simd
+      for (int k = 0; k < count; ++k) x[begin + k] -= rows.pullX[k], y[begin + k] -= rows.pullY[k];
+#pragma omp simd
+      for (int k = 0; k < count; ++k) x[next + k] += rows.pullX[k], y[next + k] += rows.pullY[k];
     }
-  }
-  if (!bands_.looseEnds().empty()) findLooseRows();
+  if (!bands_.looseEnds().empty()) findLooseRows(rows);
 }
 
-void SpringSheet::findRowsOfBand(const SpringBands::Band& band, int begin, int count) {
-  SpringStretch& at = stretch_;
-  const int next = begin + band.offset;
-  const double *x = place_.x(), *y = place_.y(), *movedX = moved_.x(), *movedY = moved_.y();
-  double *biasX = biases_.x(), *biasY = biases_.y();
-#pragma omp simd
-  for (int k = 0; k < count; ++k) {
-    at.x[k] = x[next + k] - x[begin + k];
-    at.y[k] = y[next + k] - y[begin + k];
-    at.movedX[k] = movedX[next + k] - movedX[begin + k];
-    at.movedY[k] = movedY[next + k] - movedY[begin + k];
-  }
-  at.findRows(laws_, band.slot + begin, count, h_, hBefore_, unit_, matrices_);
-#pragma omp simd
-  for (int k = 0; k < count; ++k) biasX[begin + k] -= at.biasX[k], biasY[begin + k] -= at.biasY[k];
-#pragma omp simd
-  for (int k = 0; k < count; ++k) biasX[next + k] += at.biasX[k], biasY[next + k] += at.biasY[k];
-}
-
-void SpringSheet::findLooseRows() {
-  SpringStretch& at = stretch_;
-  const double *x = place_.x(), *y = place_.y(), *movedX = moved_.x(), *movedY = moved_.y();
-  double *biasX = biases_.x(), *biasY = biases_.y();
+void SpringSheet::findLooseRows(SpringRows& rows) {
+  struct Gathered {
+    double ax[SpringRows::kMost], ay[SpringRows::kMost], bx[SpringRows::kMost], by[SpringRows::kMost];
+    SpringEnds from(const NodeField<double>& field, const std::array<int, 2>* ends, int count) {
+      for (int k = 0; k < count; ++k) {
+        const auto& [a, b] = ends[k];
+        ax[k] = field.x()[a], ay[k] = field.y()[a], bx[k] = field.x()[b], by[k] = field.y()[b];
+      }
+      return {ax, ay, bx, by};
+    }
+  } place, moved, velocity;
   const int loose = static_cast<int>(bands_.looseEnds().size());
-  for (int begin = 0; begin < loose; begin += SpringStretch::kMost) {
-    const int count = std::min(SpringStretch::kMost, loose - begin);
+  double *x = pulls_.x(), *y = pulls_.y();
+  for (int begin = 0; begin < loose; begin += SpringRows::kMost) {
+    const int count = std::min(SpringRows::kMost, loose - begin);
     const std::array<int, 2>* ends = &bands_.looseEnds()[begin];
+    rows.place = place.from(place_, ends, count), rows.moved = moved.from(moved_, ends, count);
+    rows.velocity = velocity.from(velocity_, ends, count);
+    rows.find(laws_, bands_.firstLoose() + begin, count, matrices_);
     for (int k = 0; k < count; ++k) {
       const auto& [a, b] = ends[k];
-      at.x[k] = x[b] - x[a], at.y[k] = y[b] - y[a];
-      at.movedX[k] = movedX[b] - movedX[a], at.movedY[k] = movedY[b] - movedY[a];
-    }
-    at.findRows(laws_, bands_.firstLoose() + begin, count, h_, hBefore_, unit_, matrices_);
-    for (int k = 0; k < count; ++k) {
-      const auto& [a, b] = ends[k];
-      biasX[a] -= at.biasX[k], biasY[a] -= at.biasY[k];
-      biasX[b] += at.biasX[k], biasY[b] += at.biasY[k];
+      x[a] -= rows.pullX[k], y[a] -= rows.pullY[k];
+      x[b] += rows.pullX[k], y[b] += rows.pullY[k];
     }
   }
 }
@@ -187,19 +186,19 @@ double SpringSheet::tension(int spring) const {
   const auto found = std::lower_bound(links_.begin(), links_.end(), spring,
                                       [](const Link& link, int number) { return link.spring < number; });
   const int a = found->a, b = found->b;
-  SpringStretch at;
-  at.x[0] = place_.x()[b] - place_.x()[a], at.y[0] = place_.y()[b] - place_.y()[a];
-  at.movedX[0] = moved_.x()[b] - moved_.x()[a], at.movedY[0] = moved_.y()[b] - moved_.y()[a];
-  SpringMatrices m;
-  m.assign(1);
-  SpringLaws own;
-  own.assign(1);
-  own.set(0, found->def, inverse_[a] + inverse_[b], h_);
-  at.findRows(own, 0, 1, h_, hBefore_, 1, m);
-  const double x = left_.x()[b] - left_.x()[a], y = left_.y()[b] - left_.y()[a];
-  const double forceX = at.biasX[0] + m.xx[0] * x + m.xy[0] * y,
-               forceY = at.biasY[0] + m.xy[0] * x + m.yy[0] * y;
-  return (forceX * at.x[0] + forceY * at.y[0]) / h_;
+  SpringLaws law;
+  law.assign(1);
+  law.set(0, found->def, inverse_[a] + inverse_[b], h_);
+  SpringMatrices matrix;
+  matrix.assign(1);
+  SpringRows row;
+  auto ends = [&](const NodeField<double>& field) {
+    return SpringEnds{field.x() + a, field.y() + a, field.x() + b, field.y() + b};
+  };
+  row.place = ends(place_), row.moved = ends(moved_), row.velocity = ends(left_);
+  row.h = h_, row.hBefore = hBefore_, row.mass = 1;
+  row.find(law, 0, 1, matrix);
+  return (row.pullX[0] * row.x[0] + row.pullY[0] * row.y[0]) / h_;
 }
 
 std::size_t SpringSheet::bytes() const {

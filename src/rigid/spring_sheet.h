@@ -46,19 +46,17 @@ class SpringSheet {
   };
 
   void findRows();
-  void findRowsOfBand(const SpringBands::Band& band, int begin, int count);
-  void findLooseRows();
-  double residual(double& made);
+  void findLooseRows(SpringRows& rows);
+  double residual(const Bodies& bodies, double& made);
   double conjugateGradients(double left, double enough, double scale);
   double advance(float along);
   void turn(float keep);
-  void keepEnergy(double scale);
+  void keepEnergy(const Bodies& bodies, double scale);
 
   std::vector<Link> links_;  // in the order of springs
   SpringBands bands_;
   SpringLaws laws_;
   SpringMatrices matrices_;
-  SpringStretch stretch_;
   // By node.
   std::vector<int> body_;
   std::vector<char> fresh_;                  // nothing is known of its last sub-step
@@ -66,8 +64,9 @@ class SpringSheet {
   std::vector<float> share_, inverseShare_;  // of unit_
   NodeField<double> place_, moved_;          // at the sub-step's start; within the last sub-step
   NodeField<double> impulse_;                // of the springs, in this sub-step
-  NodeField<double> biases_;                 // of its springs, with their signs
-  NodeField<double> velocity_, rest_;        // before the last solve; the impulses that are missing then
+  NodeField<double> velocity_;               // of the warm start
+  NodeField<double> pulls_;                  // bias + matrix rate of springs then, with their signs
+  NodeField<double> rest_;                   // impulses that are missing before the last solve
   NodeField<double> left_;                   // velocities as they were left by the last solve
   NodeField<double> made_, product_;         // for keepEnergy
   NodeField<float> missing_, direction_, step_, change_;  // of the conjugate gradients

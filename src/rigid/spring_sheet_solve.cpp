@@ -18,16 +18,28 @@ constexpr double kTolerance = 1e-3, kSmallest = 1e-10;
 
 /// The impulses that are missing for these velocities; the square of the velocities that they would make, by
 /// mass, and in `made` that of those that the springs make in a sub-step.
-double SpringSheet::residual(double& made) {
-  bands_.multiply(matrices_, nullptr, velocity_, rest_);
+double SpringSheet::residual(const Bodies& bodies, double& made) {
+  // Against the warm start, for which the pulls are known.
+  double *newX = made_.x(), *newY = made_.y();
+  const double *velocityX = velocity_.x(), *velocityY = velocity_.y();
+  bool same = true;
+  for (std::size_t k = 0; k < body_.size(); ++k) {
+    const Motion& v = bodies.velocity[body_[k]];
+    newX[k] = v.x - velocityX[k], newY[k] = v.y - velocityY[k];
+    same = same && newX[k] == 0 && newY[k] == 0;
+  }
+  if (same)
+    bands_.makeField(rest_);
+  else
+    bands_.multiply(matrices_, nullptr, made_, rest_);
   double *restX = rest_.x(), *restY = rest_.y();
-  const double *impulseX = impulse_.x(), *impulseY = impulse_.y(), *biasX = biases_.x(), *biasY = biases_.y(),
+  const double *impulseX = impulse_.x(), *impulseY = impulse_.y(), *pullX = pulls_.x(), *pullY = pulls_.y(),
                *inverses = inverse_.data();
   Lanes missing{}, springs{};
   for (int k = 0; k < bands_.nodes(); k += 4) {
     const Lanes ownX = load(impulseX + k), ownY = load(impulseY + k), inverse = load(inverses + k);
-    const Lanes x = -(unit_ * load(restX + k) + ownX + load(biasX + k)),
-                y = -(unit_ * load(restY + k) + ownY + load(biasY + k));
+    const Lanes x = -(unit_ * load(restX + k) + ownX + load(pullX + k)),
+                y = -(unit_ * load(restY + k) + ownY + load(pullY + k));
     store(restX + k, x);
     store(restY + k, y);
     missing += (x * x + y * y) * inverse;
@@ -90,29 +102,27 @@ double SpringSheet::conjugateGradients(double left, double enough, double scale)
 
 double SpringSheet::solve(Bodies& bodies) {
   const int count = static_cast<int>(body_.size());
-  double *velocityX = velocity_.x(), *velocityY = velocity_.y(), *leftX = left_.x(), *leftY = left_.y();
-  bool same = settled_;
-  for (int k = 0; k < count; ++k) {
-    const Motion& v = bodies.velocity[body_[k]];
-    same = same && v.x == leftX[k] && v.y == leftY[k];
-    velocityX[k] = v.x, velocityY[k] = v.y;
+  double *leftX = left_.x(), *leftY = left_.y();
+  if (settled_) {
+    int k = 0;
+    while (k < count && bodies.velocity[body_[k]].x == leftX[k] && bodies.velocity[body_[k]].y == leftY[k])
+      ++k;
+    if (k == count) return 0;
   }
-  if (same) return 0;
   double made = 0;
-  const double missing = residual(made);
+  const double missing = residual(bodies, made);
   const double small = kSmallest * size_ / h_;
   const double enough = std::max(kTolerance * kTolerance * made, small * small * total_);
   if (!(missing > enough)) return 0;
   const double scale = std::sqrt(missing / total_), units = 1 / (unit_ * scale * scale);
-  if (conjugateGradients(units * missing, units * enough, scale) > units * enough) keepEnergy(scale);
-  const float *changeX = change_.x(), *changeY = change_.y();
+  // Seven digits are not enough for the momentum of what is free, which changes by what is missing of it.
   double meanX = 0, meanY = 0;
-  if (free_) {  // seven digits are not enough for its momentum, which changes by what is missing of it
-    const double *restX = rest_.x(), *restY = rest_.y();
-    for (int k = 0; k < count; ++k) {
-      meanX += mass_[k] * changeX[k] - restX[k] / scale;
-      meanY += mass_[k] * changeY[k] - restY[k] / scale;
-    }
+  if (free_)
+    for (int k = 0; k < count; ++k) meanX -= rest_.x()[k] / scale, meanY -= rest_.y()[k] / scale;
+  if (conjugateGradients(units * missing, units * enough, scale) > units * enough) keepEnergy(bodies, scale);
+  const float *changeX = change_.x(), *changeY = change_.y();
+  if (free_) {
+    for (int k = 0; k < count; ++k) meanX += mass_[k] * changeX[k], meanY += mass_[k] * changeY[k];
     meanX /= total_, meanY /= total_;
   }
   double *impulseX = impulse_.x(), *impulseY = impulse_.y();
@@ -134,16 +144,18 @@ double SpringSheet::solve(Bodies& bodies) {
 /// With v* the velocities without the springs, and g the residual: backward Euler takes energy away if g is
 /// at right angles to v - v* and to v*. Both are brought about by adding a (v - v*) + b v*; what is free has
 /// v* counted from its centre of mass.
-void SpringSheet::keepEnergy(double scale) {
+void SpringSheet::keepEnergy(const Bodies& bodies, double scale) {
   const int count = static_cast<int>(body_.size());
-  double *velocityX = velocity_.x(), *velocityY = velocity_.y(), *madeX = made_.x(), *madeY = made_.y();
+  NodeField<double>& without = rest_;  // it has served
+  double *madeX = made_.x(), *madeY = made_.y(), *withoutX = without.x(), *withoutY = without.y();
   const double *impulseX = impulse_.x(), *impulseY = impulse_.y();
   float *changeX = change_.x(), *changeY = change_.y();
+  auto velocity = [&](int k) { return bodies.velocity[body_[k]]; };
   double meanX = 0, meanY = 0;
   if (free_) {
     for (int k = 0; k < count; ++k) {
-      meanX += mass_[k] * velocityX[k] - impulseX[k];
-      meanY += mass_[k] * velocityY[k] - impulseY[k];
+      meanX += mass_[k] * velocity(k).x - impulseX[k];
+      meanY += mass_[k] * velocity(k).y - impulseY[k];
     }
     meanX /= total_, meanY /= total_;
   }
@@ -151,8 +163,8 @@ void SpringSheet::keepEnergy(double scale) {
     const double x = inverse_[k] * impulseX[k], y = inverse_[k] * impulseY[k];
     madeX[k] = x + scale * changeX[k], madeY[k] = y + scale * changeY[k];
     const bool moves = inverse_[k] > 0;
-    velocityX[k] = moves ? velocityX[k] - x - meanX : 0;  // it has served: v* from here on
-    velocityY[k] = moves ? velocityY[k] - y - meanY : 0;
+    withoutX[k] = moves ? velocity(k).x - x - meanX : 0;
+    withoutY[k] = moves ? velocity(k).y - y - meanY : 0;
   }
   auto dot = [&](const NodeField<double>& p, const NodeField<double>& q) {
     double sum = 0;
@@ -160,13 +172,12 @@ void SpringSheet::keepEnergy(double scale) {
     return sum;
   };
   // What is still missing, along both.
-  NodeField<double>& without = velocity_;
   const double perUnit = 1 / unit_;
   double ra = 0, rb = 0;
   for (int k = 0; k < count; ++k) {
     const double x = scale * missing_.x()[k], y = scale * missing_.y()[k];
     ra += madeX[k] * x + madeY[k] * y;
-    rb += velocityX[k] * x + velocityY[k] * y;
+    rb += withoutX[k] * x + withoutY[k] * y;
   }
   std::vector<double> share(mass_);
   for (double& each : share) each *= perUnit;
@@ -176,8 +187,8 @@ void SpringSheet::keepEnergy(double scale) {
   if (!(determinant > 1e-12 * aa * bb)) return;
   const double a = (ra * bb - rb * ab) / determinant, b = (rb * aa - ra * ab) / determinant;
   for (int k = 0; k < count; ++k) {
-    changeX[k] += static_cast<float>((a * madeX[k] + b * velocityX[k]) / scale);
-    changeY[k] += static_cast<float>((a * madeY[k] + b * velocityY[k]) / scale);
+    changeX[k] += static_cast<float>((a * madeX[k] + b * withoutX[k]) / scale);
+    changeY[k] += static_cast<float>((a * madeY[k] + b * withoutY[k]) / scale);
   }
 }
 
