@@ -3,7 +3,6 @@
 
 #include "base/maths.h"
 #include "render/body_layers.h"
-#include "render/body_mark.h"
 #include "render/link_shapes.h"
 
 namespace smokebox {
@@ -23,6 +22,8 @@ BodyColors colorsOf(const BodyPicture& body, const LayerSpec& layer, bool darkGr
   const Color fill = body.color ? *body.color : layer.color.value_or(bodyColor(body.index));
   return {fill, mixed(fill, {0, 0, 0}, darkGround ? kDark : kLight)};
 }
+
+Vec2 inOwn(Vec2 point, const Pose& pose) { return transformed(point - pose.position, {{}, -pose.angleRad}); }
 
 double strokeFor(double radius, const PictureFrame& frame) {
   return std::min(frame.line(kOutlineUnits), std::max(kOutlineShare * radius, 0.6));
@@ -66,26 +67,34 @@ void BodiesLayer::drawOutlines(const BodyPicture& body, std::size_t place, const
   }
   if (pixels_.empty() || pixels_[0].empty()) return;
   const BodyColors colors = colorsOf(body, layer, frame.darkGround);
-  const LinearColor outline = linear(colors.outline, layer.opacity);
   const Vec2 centre = frame.toPixels(body.pose.position), corner = pixels_[0][0];
   const double radius = length(corner - centre);
   const double stroke = strokeFor(radius, frame);
   Kept& kept = kept_[place];
-  if (kept.outlines != pixels_) {
-    kept.mask = painter_.solid(pixels_, stroke, std::max(1.2, kThinnestUnits * frame.unit));
+  if (kept.outlines != pixels_ || kept.marked != layer.mark) {
+    std::optional<Spoke> spoke;
+    if (layer.mark && radius >= kMarkFromPixels) spoke = spokeOf(body, kept, stroke, frame);
+    kept.mask = painter_.solid(pixels_, stroke, std::max(1.2, kThinnestUnits * frame.unit),
+                               spoke ? &*spoke : nullptr);
     kept.outlines = pixels_;
+    kept.marked = layer.mark;
   }
-  palette_.sprites.add(kept.mask, linear(colors.fill, layer.opacity), outline);
-  if (!layer.mark || radius < kMarkFromPixels) return;
-  if (const auto mark = markOf(body.outlines, body.pose)) {
-    const double width = 0.8 * stroke;
-    const Vec2 from = frame.toPixels(mark->from), way = frame.toPixels(mark->to) - from;
-    const double reach = length(way);
-    if (reach > 4 * width) {
-      palette_.sprites.addSegment(from, from + (1 - stroke / reach) * way, width, outline);
-      palette_.sprites.addDisk(from, 1.5 * width, outline);
-    }
+  palette_.sprites.add(kept.mask, linear(colors.fill, layer.opacity), linear(colors.outline, layer.opacity));
+}
+
+std::optional<Spoke> BodiesLayer::spokeOf(const BodyPicture& body, Kept& kept, double stroke,
+                                          const PictureFrame& frame) const {
+  if (kept.index != body.index) {
+    // Its shape stays what it is, so the mark is looked for once.
+    kept.mark = markOf(body.outlines, body.pose);
+    kept.index = body.index;
+    if (kept.mark) kept.mark = BodyMark{inOwn(kept.mark->from, body.pose), inOwn(kept.mark->to, body.pose)};
   }
+  if (!kept.mark) return {};
+  Spoke spoke{frame.toPixels(transformed(kept.mark->from, body.pose)),
+              frame.toPixels(transformed(kept.mark->to, body.pose)), 0.8 * stroke, 1.2 * stroke};
+  if (length(spoke.to - spoke.from) < 4 * spoke.width) return {};
+  return spoke;
 }
 
 }  // namespace smokebox

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/body_mark.h"
 #include "render/layers.h"
 
 namespace smokebox {
@@ -22,7 +23,13 @@ class BodiesLayer {
   struct Kept {
     PixelOutlines outlines;
     Mask mask;
+    bool marked = false;
+    int index = -1;                // of the body that the mark is of
+    std::optional<BodyMark> mark;  // in the body's own coordinates
   };
+  std::optional<Spoke> spokeOf(const BodyPicture& body, Kept& kept, double stroke,
+                               const PictureFrame& frame) const;
+
   Palette& palette_;
   MaskPainter painter_;
   std::vector<Kept> kept_;  // by their place in the snapshot

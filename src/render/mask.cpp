@@ -89,7 +89,7 @@ void MaskPainter::measureDistances(const PixelOutlines& outlines, const Box& box
     for (std::size_t k = 0; k < outline.size(); ++k) {
       const Vec2 a = outline[k] - corner, b = outline[(k + 1) % outline.size()] - corner;
       const Vec2 along = b - a;
-      const double length2 = dot(along, along);
+      const double length2 = dot(along, along), perLength2 = length2 > 0 ? 1 / length2 : 0;
       const double low = std::min(a.y, b.y) - reach, high = std::max(a.y, b.y) + reach;
       if (high < 0 || low > height - 1) continue;
       const int pastRow = static_cast<int>(std::min(std::floor(high), height - 1.0)) + 1;
@@ -107,7 +107,7 @@ void MaskPainter::measureDistances(const PixelOutlines& outlines, const Box& box
         float* line = distance2_.data() + std::size_t(row) * width;
         for (int column = static_cast<int>(first); column <= last; ++column) {
           const Vec2 d{column - a.x, row - a.y};
-          const double s = length2 > 0 ? std::clamp(dot(d, along) / length2, 0.0, 1.0) : 0.0;
+          const double s = std::clamp(dot(d, along) * perLength2, 0.0, 1.0);
           const Vec2 off = d - s * along;
           line[column] = std::min(line[column], static_cast<float>(dot(off, off)));
         }
@@ -115,35 +115,67 @@ void MaskPainter::measureDistances(const PixelOutlines& outlines, const Box& box
     }
 }
 
-Mask MaskPainter::solid(const PixelOutlines& outlines, double stroke, double thinnest) {
+/// How much of a pixel, by its centre, the spoke covers.
+float MaskPainter::coverageOf(const Spoke& spoke, Vec2 pixel) {
+  const Vec2 way = spoke.to - spoke.from, d = pixel - spoke.from;
+  const double length2 = dot(way, way), s = length2 > 0 ? std::clamp(dot(d, way) / length2, 0.0, 1.0) : 0.0;
+  const double line = 0.5 * spoke.width - length(d - s * way), hub = spoke.hub - length(d);
+  // What is thinner than a pixel is fainter.
+  const double most = std::min(1.0, spoke.width);
+  return static_cast<float>(
+      std::max(most * std::clamp(line + 0.5, 0.0, 1.0), std::clamp(hub + 0.5, 0.0, 1.0)));
+}
+
+void MaskPainter::addSpoke(const Spoke& spoke, const Box& box) {
+  const double margin = std::max(0.5 * spoke.width, spoke.hub) + 0.5;
+  const auto first = [&](double a, double b, int from) {
+    return std::max(0, static_cast<int>(std::floor(std::min(a, b) - margin)) - from);
+  };
+  const auto past = [&](double a, double b, int from, int to) {
+    return std::min(to - from, static_cast<int>(std::ceil(std::max(a, b) + margin)) - from);
+  };
+  for (int row = first(spoke.from.y, spoke.to.y, box.y0);
+       row < past(spoke.from.y, spoke.to.y, box.y0, box.y1); ++row) {
+    float* line = line_.data() + std::size_t(row) * (box.x1 - box.x0);
+    for (int column = first(spoke.from.x, spoke.to.x, box.x0);
+         column < past(spoke.from.x, spoke.to.x, box.x0, box.x1); ++column)
+      line[column] = std::max(line[column], coverageOf(spoke, {box.x0 + column + 0.5, box.y0 + row + 0.5}));
+  }
+}
+
+Mask MaskPainter::solid(const PixelOutlines& outlines, double stroke, double thinnest, const Spoke* spoke) {
   const double widen = std::max(0.0, 0.5 * (thinnest - meanThickness(outlines)));
-  const Box box = visibleBox(outlines, widen + 1);
+  const Box box = visibleBox(outlines, widen > 0 ? widen + 1 : 0);
   Mask mask{box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0, {}};
   if (mask.empty()) return {};
-  mask.coverage.resize(std::size_t(2) * mask.width * mask.height);
+  const std::size_t pixels = std::size_t(mask.width) * mask.height;
+  mask.coverage.resize(2 * pixels);
   accumulate(outlines, box);
-  const double reach = std::max(stroke, widen) + 1;
-  measureDistances(outlines, box, reach);
+  measureDistances(outlines, box, std::max(stroke, widen) + 1);
+  const float inside = static_cast<float>(stroke) + 0.5f, around = static_cast<float>(widen) + 0.5f;
+  // What the silhouette and the line along it cover; plain loops, which the compiler can do many at a time.
+  fill_.resize(pixels);
+  line_.resize(pixels);
   for (int row = 0; row < mask.height; ++row) {
     const float* areas = area_.data() + std::size_t(row) * (mask.width + 2);
-    const float* distances = distance2_.data() + std::size_t(row) * mask.width;
-    std::uint8_t* out = mask.at(0, row);
+    float* fill = fill_.data() + std::size_t(row) * mask.width;
     float sum = 0;
     for (int column = 0; column < mask.width; ++column) {
       sum += areas[column];
-      float fill = std::min(std::abs(sum), 1.0f);
-      float line = 0;
-      if (distances[column] < reach * reach) {
-        const float distance = std::sqrt(distances[column]);
-        line = std::clamp(static_cast<float>(stroke) - distance + 0.5f, 0.0f, 1.0f);
-        if (widen > 0)
-          fill = std::max(fill, std::clamp(static_cast<float>(widen) - distance + 0.5f, 0.0f, 1.0f));
-      }
-      // Together they must cover what the silhouette covers: over + under (1 - over) = fill.
-      const float over = fill * line;
-      out[2 * column] = toByte(over < 1 ? (fill - over) / (1 - over) : 0.0f);
-      out[2 * column + 1] = toByte(over);
+      fill[column] = std::min(std::abs(sum), 1.0f);
     }
+  }
+  for (std::size_t k = 0; k < pixels; ++k)
+    line_[k] = std::clamp(inside - std::sqrt(distance2_[k]), 0.0f, 1.0f);
+  if (widen > 0)
+    for (std::size_t k = 0; k < pixels; ++k)
+      fill_[k] = std::max(fill_[k], std::clamp(around - std::sqrt(distance2_[k]), 0.0f, 1.0f));
+  if (spoke) addSpoke(*spoke, box);
+  for (std::size_t k = 0; k < pixels; ++k) {
+    // Together they must cover what the silhouette covers: over + under (1 - over) = fill.
+    const float over = fill_[k] * line_[k], under = (fill_[k] - over) / std::max(1 - over, 1e-6f);
+    mask.coverage[2 * k] = toByte(under);
+    mask.coverage[2 * k + 1] = toByte(over);
   }
   return mask;
 }

@@ -24,6 +24,13 @@ struct Mask {
 /// Outlines in pixels (y down), kept between pictures for their memory.
 using PixelOutlines = std::vector<Outline>;
 
+/// A line with a dot at its start, in pixels.
+struct Spoke {
+  Vec2 from, to;
+  double width = 0, hub = 0;  // hub: radius of the dot
+  bool operator==(const Spoke&) const = default;
+};
+
 class MaskPainter {
  public:
   MaskPainter(int pictureWidth, int pictureHeight)
@@ -31,8 +38,8 @@ class MaskPainter {
 
   /// A solid: under is its fill, over its outline, `stroke` pixels wide, which lies inside so that the
   /// silhouette is exact and corners stay sharp. What is thinner than `thinnest` pixels on average is widened
-  /// to that.
-  Mask solid(const PixelOutlines& outlines, double stroke, double thinnest);
+  /// to that. A spoke is part of the outline.
+  Mask solid(const PixelOutlines& outlines, double stroke, double thinnest, const Spoke* spoke = nullptr);
 
   /// The line along closed outlines: over is the line, under the same with `halo` pixels more on each side.
   Mask line(const PixelOutlines& outlines, double width, double halo);
@@ -44,11 +51,14 @@ class MaskPainter {
   Box visibleBox(const PixelOutlines& outlines, double margin) const;
   void accumulate(const PixelOutlines& outlines, const Box& box);
   void addEdge(Vec2 a, Vec2 b, int width, int height);
+  void addSpoke(const Spoke& spoke, const Box& box);
+  static float coverageOf(const Spoke& spoke, Vec2 pixel);
   void measureDistances(const PixelOutlines& outlines, const Box& box, double reach);
 
   int pictureWidth_, pictureHeight_;
   std::vector<float> area_;       // signed area by pixel; its running sum along a row is the coverage
   std::vector<float> distance2_;  // squared distance to the nearest edge
+  std::vector<float> fill_, line_;
 };
 
 }  // namespace smokebox

@@ -103,7 +103,8 @@ void addCopies(const Block& block, const BodySpec& first, const std::vector<Plac
   const long count = block.grid[0] * block.grid[1];
   for (long time = 0; time < origin.times; ++time)
     for (long k = 0; k < count; ++k) {
-      const auto seed = static_cast<std::uint64_t>(block.seed), index = static_cast<std::uint64_t>(k);
+      const auto seed = static_cast<std::uint64_t>(block.seed);
+      const auto index = static_cast<std::uint64_t>(time * count + k);  // no two times are alike
       auto chance = [&](std::uint64_t channel) { return randomShare(seed, channel, index); };
       auto either = [&](std::uint64_t channel) { return 2 * chance(channel) - 1; };
       auto choice = [&](std::uint64_t channel, std::size_t of) {

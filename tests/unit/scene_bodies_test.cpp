@@ -125,6 +125,53 @@ TEST(SceneBodies, BodiesThatAreWrongAreRefused) {
               {"s.yaml:3:17", "a second thing named `a`"});
 }
 
+TEST(SceneBodies, CopiesOutsideAreToldOnce) {
+  // Truth: of twelve copies in a row of 4 m, those at 4 to 5.5 m are outside: one message, with their number.
+  expectFault(
+      "bodies: [{name: r, shape: {circle: {radius: 0.1}}, position: [0.1, 1], repeat: {grid: [12, 1], "
+      "spacing: [0.5, 1]}}]\n",
+      {"s.yaml:2:10: `r.8` and 3 more of its copies start outside of the domain"});
+}
+
+TEST(SceneBodies, SizesBeyondReckoningAreTold) {
+  // Truth: nothing can be reckoned with a body of 1e-300 m, or of 1e200 m, or of 1e300 kg.
+  auto of = [](const std::string& what) {
+    return "bodies: [{name: a, shape: {circle: {radius: " + what + "}}, position: [1, 1]}]\n";
+  };
+  expectFault(of("1e-300"), {"s.yaml:2:10: `a` is 2e-300 m across: too small for this domain"});
+  EXPECT_NE(problemsOf(of("1e200")).find("`a` is 2e+200 m across: too large"), std::string::npos);
+  expectFault("bodies: [{name: a, shape: {circle: {radius: 0.1}}, position: [1, 1], mass: 1e300}]\n",
+              {"`a` has a mass beyond reckoning"});
+}
+
+TEST(SceneBodies, WhatIsAddedAgainAndAgainDiffers) {
+  // Truth: each time an event adds a row, its shapes, places and colours are other ones; a shorter film has
+  // the same first ones.
+  auto rows = [](const std::string& until) {
+    return specOf(
+        "time: {duration: 4}\nevents: [{every: 1, until: " + until +
+        ", add: {body: {name: r, position: [0.5, 1], repeat: {grid: [6, 1], spacing: [0.5, 0.5], jitter: "
+        "0.2, "
+        "shapes: [{circle: {radius: 0.05}}, {box: {size: [0.1, 0.1]}}], colors: [red, blue]}}}}]\n");
+  };
+  const SceneSpec two = rows("1.5"), three = rows("2.5");
+  ASSERT_EQ(two.bodies.size(), 12u);
+  ASSERT_EQ(three.bodies.size(), 18u);
+  int alike = 0;
+  for (int k = 0; k < 6; ++k) alike += two.bodies[k].pose == two.bodies[k + 6].pose;
+  EXPECT_EQ(alike, 0);
+  for (int k = 0; k < 12; ++k) EXPECT_EQ(two.bodies[k].pose, three.bodies[k].pose) << k;
+}
+
+TEST(SceneBodies, CaptionsMayStandAtTheTop) {
+  // Truth: bottom unless `side` says top; anything else is refused.
+  EXPECT_FALSE(specOf("view: {layers: [caption]}\n").view.layers.at(0).atTop);
+  EXPECT_TRUE(specOf("view: {layers: [{caption: {side: top}}]}\n").view.layers.at(0).atTop);
+  expectFault("view: {layers: [{caption: {side: left}}]}\n",
+              {"s.yaml:2:35: `view.layers.0.caption.side` must be top or bottom"});
+  EXPECT_EQ((*specOf("view: {layers: [{springs: {range: [-2, 3]}}]}\n").view.layers.at(0).range)[1], 3);
+}
+
 TEST(SceneBodies, PlacesThatCannotBeAreTold) {
   // Truth: an error for what is out of the domain; a warning for what overlaps, and none for what touches.
   auto at = [](const std::string& name, const std::string& place) {
