@@ -139,9 +139,12 @@ struct Checks {
       const double across = std::max(thing.high.x - thing.low.x, thing.high.y - thing.low.y);
       char size[40];
       std::snprintf(size, sizeof size, "%.3g m", across);
-      if (!(across >= kSmallest * domain) || !(across <= kLargest * domain))
-        scene.reader().error(markOf(body), nameOf(thing) + " is " + size + " across: too " +
-                                               (across > domain ? "large" : "small") + " for this domain");
+      if (!(across >= kSmallest * domain) || !(across <= kLargest * domain)) {
+        scene.reader().error(markOf(body), nameOf(thing) + " is too " +
+                                               (across > domain ? "large" : "small") +
+                                               " for this domain: " + size + " across");
+        continue;
+      }
       const double mass = body.mass.value_or(body.density * across * across);
       if (!(mass >= kLightest) || !(mass <= kHeaviest))
         scene.reader().error(markOf(body), nameOf(thing) + " has a mass beyond reckoning",

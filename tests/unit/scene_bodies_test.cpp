@@ -126,9 +126,10 @@ TEST(SceneBodies, BodiesThatAreWrongAreRefused) {
 }
 
 TEST(SceneBodies, CopiesOutsideAreToldOnce) {
-  // Truth: of twelve copies in a row of 4 m, those at 4 to 5.5 m are outside: one message, with their number.
+  // Truth: of twelve copies in a row of 4 m, those at 4.2 to 5.7 m are outside: one message, with their
+  // number.
   expectFault(
-      "bodies: [{name: r, shape: {circle: {radius: 0.1}}, position: [0.1, 1], repeat: {grid: [12, 1], "
+      "bodies: [{name: r, shape: {circle: {radius: 0.1}}, position: [0.2, 1], repeat: {grid: [12, 1], "
       "spacing: [0.5, 1]}}]\n",
       {"s.yaml:2:10: `r.8` and 3 more of its copies start outside of the domain"});
 }
@@ -138,8 +139,9 @@ TEST(SceneBodies, SizesBeyondReckoningAreTold) {
   auto of = [](const std::string& what) {
     return "bodies: [{name: a, shape: {circle: {radius: " + what + "}}, position: [1, 1]}]\n";
   };
-  expectFault(of("1e-300"), {"s.yaml:2:10: `a` is 2e-300 m across: too small for this domain"});
-  EXPECT_NE(problemsOf(of("1e200")).find("`a` is 2e+200 m across: too large"), std::string::npos);
+  expectFault(of("1e-300"), {"s.yaml:2:10: `a` is too small for this domain"});
+  EXPECT_NE(problemsOf(of("1e200")).find("`a` is too large for this domain: 2e+200 m across"),
+            std::string::npos);
   expectFault("bodies: [{name: a, shape: {circle: {radius: 0.1}}, position: [1, 1], mass: 1e300}]\n",
               {"`a` has a mass beyond reckoning"});
 }
@@ -168,7 +170,7 @@ TEST(SceneBodies, CaptionsMayStandAtTheTop) {
   EXPECT_FALSE(specOf("view: {layers: [caption]}\n").view.layers.at(0).atTop);
   EXPECT_TRUE(specOf("view: {layers: [{caption: {side: top}}]}\n").view.layers.at(0).atTop);
   expectFault("view: {layers: [{caption: {side: left}}]}\n",
-              {"s.yaml:2:35: `view.layers.0.caption.side` must be top or bottom"});
+              {"s.yaml:2:34: `view.layers.0.caption.side` must be top or bottom"});
   EXPECT_EQ((*specOf("view: {layers: [{springs: {range: [-2, 3]}}]}\n").view.layers.at(0).range)[1], 3);
 }
 
