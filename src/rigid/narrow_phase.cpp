@@ -536,8 +536,21 @@ bool NarrowPhase::stopOnce(const Bodies& bodies, const BroadPhase& broad, double
                                         {fb, wb.linear(), wb.turn}, thin, most));
     if (first >= 1) continue;
     const double share = past + (1 - past) * first;
-    for (const int body : {a, b})
-      if (bodies.moves(body)) way[body] = part(body, share);
+    // What a script moves does not stop: it takes the other one along.
+    auto stop = [&](int body, int other) {
+      if (!bodies.moves(body)) return;
+      const Motion w = part(body, share);
+      way[body] = w;
+      const Motion carry = part(other, 1 - share);
+      if (bodies.moves(other) || (carry.x == 0 && carry.y == 0 && carry.turn == 0)) return;
+      const Vec2 shift = body == b ? broad.shiftOf(pair.key) : -broad.shiftOf(pair.key);
+      const Vec2 centre = bodies.positionNow(other) + part(other, share).linear();
+      const Vec2 from = bodies.positionNow(body) + w.linear() + shift - centre;
+      const Vec2 by = carry.linear() + rotate(turnBy(carry.turn), from) - from;
+      way[body] = {w.x + by.x, w.y + by.y, w.turn + carry.turn};
+    };
+    stop(a, b);
+    stop(b, a);
     any = true;
   }
   return any;
