@@ -26,57 +26,12 @@ constexpr double kReuseTurn = 1e-5;
 constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 // A lively pair that is this many sub-steps apart is left alone for as long.
 constexpr double kAhead = 4;
-// Beyond this share of the thinner one's width in a sub-step, a pair is swept.
-constexpr double kSwept = 0.25;
 // What overlaps by more than this share of the thinner one's width, and goes on closing in faster than that
 // (m/s) against all impulses, is crushed.
 constexpr double kCrushed = 0.03, kCrushSpeed = 0.2;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
-// Swept pairs are stopped at this share of the thinner one's width from each other.
-constexpr double kTarget = 1e-3;
-
-bool touching(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const Frame& fb, double margin) {
-  Manifold manifold;
-  return collide(a, fa, b, fb, margin, manifold);
-}
-
-/// The share of their motion that two pieces can make before they overlap by more than a quarter of `thin`:
-/// conservative advancement (Mirtich 1996) on the signed gap, for no point moves by more than `most`. Ends
-/// after a bounded number of rounds, at a share that is safe.
-double safeShare(const ConvexPiece& a, const Sweep& sa, const ConvexPiece& b, const Sweep& sb, double thin,
-                 double most) {
-  constexpr int kRounds = 64;
-  const double deep = 0.25 * thin;
-  double share = 0;
-  if (!touching(a, sa.start, b, sb.start, deep)) {
-    const auto hit = timeOfImpact(a, sa, b, sb, kTarget * thin);
-    if (!hit) return 1;
-    share = *hit;
-  }
-  auto gapAt = [&](double at) {
-    Manifold manifold;
-    const Frame fa = frameAt(sa, at), fb = frameAt(sb, at);
-    if (!collide(a, fa, b, fb, deep, manifold)) return std::max(closestPoints(a, fa, b, fb).distance, deep);
-    const double gap = manifold.points[0].gap;
-    return manifold.count == 2 ? std::min(gap, manifold.points[1].gap) : gap;
-  };
-  if (share == 0) {  // what overlaps already may at least part
-    const double before = gapAt(0), soon = std::min(deep / most, 1.0);
-    if (before < -0.8 * deep) {
-      if (gapAt(soon) < before) return 0;
-      share = soon;
-    }
-  }
-  for (int round = 0; round < kRounds; ++round) {
-    const double gap = gapAt(share);
-    if (gap < -0.8 * deep) return share;
-    share += (gap + deep) / most;
-    if (share >= 1) return 1;
-  }
-  return share;
-}
 
 bool isMoving(const Bodies& bodies, int body) {
   const Motion& v = bodies.velocity[body];
@@ -169,7 +124,7 @@ double NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, d
     double share = 0;
     Frame ta = fa, tb = fb;
     if (swept) {
-      const double target = kTarget * thinner(bodies, key.a, key.b);
+      const double target = kSweptTarget * thinner(bodies, key.a, key.b);
       if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
         const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
         const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
@@ -498,62 +453,18 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
 
 void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, double h,
                               const std::vector<double>* since, std::vector<Motion>& way) {
-  constexpr int kRounds = 4;  // what one pair stops, another may meet
-  for (int round = 0; round < kRounds; ++round)
-    if (!stopOnce(bodies, broad, h, since, way)) return;
-}
-
-bool NarrowPhase::stopOnce(const Bodies& bodies, const BroadPhase& broad, double h,
-                           const std::vector<double>* since, std::vector<Motion>& way) {
-  bool any = false;
-  for (const LivelyPair& pair : pairs_) {
+  const bool any = std::any_of(pairs_.begin(), pairs_.end(), [&](const LivelyPair& pair) {
     const int a = pair.key.a, b = pair.key.b;
-    const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
-    const double thin = thinner(bodies, a, b);
-    // What lies ahead after the last impact; before it the ways were other ones.
-    const double past = since ? std::max((*since)[a], (*since)[b]) / h : 0;
-    auto part = [&](int body, double share) -> Motion {
-      const Motion& w = way[body];
-      return {share * w.x, share * w.y, share * w.turn};
-    };
-    auto frame = [&](int body) -> Frame {
-      const Frame now = bodies.frameNow(body);
-      const Motion m = part(body, past);
-      return {now.position + m.linear(), turnedBy(now.turn, m.turn)};
-    };
-    const Motion wa = part(a, 1 - past), wb = part(b, 1 - past);
+    const Motion &wa = way[a], &wb = way[b];
     const double most = length(wa.linear() - wb.linear()) +
                         std::abs(wa.turn) * bodies.extent[a].turningReach +
                         std::abs(wb.turn) * bodies.extent[b].turningReach;
-    if (most <= kSwept * thin) continue;
-    const Frame fa = frame(a);
-    Frame fb = frame(b);
-    fb.position = fb.position + broad.shiftOf(pair.key);
-    findPiecePairs(sa, fa, sb, fb, most, pieces_);
-    double first = 1;
-    for (const PiecePair& pieces : pieces_)
-      first = std::min(first, safeShare(sa.pieces[pieces.a], {fa, wa.linear(), wa.turn}, sb.pieces[pieces.b],
-                                        {fb, wb.linear(), wb.turn}, thin, most));
-    if (first >= 1) continue;
-    const double share = past + (1 - past) * first;
-    // What a script moves does not stop: it takes the other one along.
-    auto stop = [&](int body, int other) {
-      if (!bodies.moves(body)) return;
-      const Motion w = part(body, share);
-      way[body] = w;
-      const Motion carry = part(other, 1 - share);
-      if (bodies.moves(other) || (carry.x == 0 && carry.y == 0 && carry.turn == 0)) return;
-      const Vec2 shift = body == b ? broad.shiftOf(pair.key) : -broad.shiftOf(pair.key);
-      const Vec2 centre = bodies.positionNow(other) + part(other, share).linear();
-      const Vec2 from = bodies.positionNow(body) + w.linear() + shift - centre;
-      const Vec2 by = carry.linear() + rotate(turnBy(carry.turn), from) - from;
-      way[body] = {w.x + by.x, w.y + by.y, w.turn + carry.turn};
-    };
-    stop(a, b);
-    stop(b, a);
-    any = true;
-  }
-  return any;
+    return most > kSwept * thinner(bodies, a, b);
+  });
+  if (!any) return;
+  swept_.clear();
+  for (const LivelyPair& pair : pairs_) swept_.push_back(pair.key);
+  passing_.stop(bodies, broad, swept_, h, since, way);
 }
 
 void NarrowPhase::endStep(const Bodies& bodies, BroadPhase& broad) {

@@ -11,6 +11,7 @@
 #include "rigid/collide_bodies.h"
 #include "rigid/contact.h"
 #include "rigid/contact_blocks.h"
+#include "rigid/passing.h"
 
 namespace smokebox {
 
@@ -71,8 +72,6 @@ class NarrowPhase {
   /// there are any.
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
               const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
-  bool stopOnce(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
-                std::vector<Motion>& way);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
 
@@ -86,7 +85,8 @@ class NarrowPhase {
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in
   bool pairsListed_ = false;
   std::vector<PiecePair> pieces_;
-  std::vector<PairKey> late_;
+  std::vector<PairKey> late_, swept_;
+  Passing passing_;
   std::vector<int> leaving_, turned_, crushed_;
   std::vector<double> crushSpeed_;  // by crushed body
   double elapsed_ = 0, h_ = 0;
