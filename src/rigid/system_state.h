@@ -37,6 +37,7 @@ struct RigidSystem::State {
   void findWays(double h, bool withStruck);
   void impacts(double h);
   bool isSqueezed(const Contact& contact) const;
+  bool meetsFast(const Contact& contact, double h) const;
   void keepInside();
   void warmStartAll(double h);
   void collectTouches(const std::vector<Contact>& contacts);

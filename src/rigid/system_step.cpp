@@ -188,6 +188,9 @@ void RigidSystem::State::impacts(double h) {
     for (Contact& contact : narrow.lively())
       if (contact.bounce > 0 && !isSqueezed(contact)) bouncers.push_back(&contact);
     if (bouncers.empty()) return;
+    // Who is struck must not have flown on through what it does not bounce off.
+    for (Contact& contact : narrow.lively())
+      if (contact.bounce <= 0 && meetsFast(contact, h)) bouncers.push_back(&contact);
     impact.run(bodies, bouncers, h, gravity, least, struck);
     if (impact.count() == 0) return;
     anyStruck = true;
@@ -206,6 +209,13 @@ bool RigidSystem::State::isSqueezed(const Contact& contact) const {
     if (contact.points[k].impulseN > 0 &&
         contact.points[k].gap + gapMoved(bodies, contact, contact.points[k]) < deep)
       return true;
+  return false;
+}
+
+bool RigidSystem::State::meetsFast(const Contact& contact, double h) const {
+  const double thin = std::min(bodies.def[contact.a].shape->thinnest, bodies.def[contact.b].shape->thinnest);
+  for (int k = 0; k < contact.count; ++k)
+    if (-partingSpeed(bodies, contact, contact.points[k]) * h > kSwept * thin) return true;
   return false;
 }
 
