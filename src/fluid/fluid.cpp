@@ -54,11 +54,14 @@ void Fluid::addConfinement(const Boundary& boundary, double strength, double len
 }
 
 void Fluid::advect(const Boundary& boundary, double dt) {
+  constexpr int kMostSmooth =
+      2;  // sub-steps up to which a step's correction of the pressure resembles the last
   carried_ = advection_.advance(boundary, u_, v_, phi_, parts_.forced ? &accelerationU_ : nullptr,
                                 parts_.forced ? &accelerationV_ : nullptr, dt,
                                 [&](Field& u, Field& v, int cycles, double gain) {
                                   pressure_.projectRoughly(boundary, u, v, cycles, &phi_, gain);
                                 });
+  if (carried_.subSteps == 0 || carried_.subSteps > kMostSmooth) pressure_.forget();
 }
 
 void Fluid::diffuse(const Boundary& boundary, double viscosity, double dt) {

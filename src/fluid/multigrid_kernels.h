@@ -75,16 +75,50 @@ SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int
 }
 
 /// The new values of both colours in 16 cells; `left` are the values to the left of them.
-SMOKEBOX_INLINE Lanes relaxedRegular(const float* x, const float* b, std::ptrdiff_t stride,
-                                     const Lanes& left) {
-  return (((left + load(x + 1)) + (load(x - stride) + load(x + stride))) + load(b)) * 0.25f;
-}
 SMOKEBOX_INLINE Lanes relaxedGeneral(const float* x, const float* b, const float* ax, const float* ay,
                                      const float* id, std::ptrdiff_t stride, const Lanes& left) {
   return (((load(ax) * left + load(ax + 1) * load(x + 1)) +
            (load(ay) * load(x - stride) + load(ay + stride) * load(x + stride))) +
           load(b)) *
          load(id);
+}
+
+/// Sweeps the cells of `lanes` in the chunks [begin, end) of a row; returns the old values to the left of the
+/// next chunk.
+SMOKEBOX_INLINE Lanes sweepRegular(float* x, const float* b, std::ptrdiff_t stride, int begin, int end,
+                                   Lanes left, const LaneMask& lanes) {
+  Lanes here = load(x + begin);
+  for (int i = begin; i < end; i += kLanes) {
+    const Lanes ahead = load(x + i + kLanes);
+#ifdef __AVX512F__
+    // From what is loaded already: loads across two lines of the cache take twice as long.
+    const LaneMask next = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+    const Lanes right = __builtin_shuffle(here, ahead, next);
+    const Lanes nextLeft = __builtin_shuffle(here, ahead, next + (kLanes - 2));
+#else
+    const Lanes right = load(x + i + 1), nextLeft = load(x + i + kLanes - 1);
+#endif
+    const Lanes value =
+        (((left + right) + (load(x + i - stride) + load(x + i + stride))) + load(b + i)) * 0.25f;
+    store(x + i, lanes ? value : here);
+    left = nextLeft;
+    here = ahead;
+  }
+  return left;
+}
+
+/// The same for a run of them: the colours are the same in all lanes up to a middle, and beyond it.
+SMOKEBOX_INLINE Lanes sweepRegularRun(const Level& level, float* x, const float* b, const Level::Run& run,
+                                      Lanes left, int j, int colour) {
+  const int last = run.end, middle = level.swapsAt;
+  const std::ptrdiff_t stride = level.stride;
+  for (int i = run.begin; i < last;) {
+    int end = last;
+    if (i < middle && middle < last) end = std::max(middle / kLanes * kLanes, i + kLanes);
+    left = sweepRegular(x, b, stride, i, end, left, lanesOfColour(level, i, j, colour));
+    i = end;
+  }
+  return left;
 }
 
 /// The two columns of one colour in the middle of mirrored colours: solved together, from what a sweep made
@@ -143,12 +177,7 @@ inline void sweepRow(Level& level, int j, int colour) {
     if (run->begin != done) left = load(x + run->begin - 1);
     done = run->end;
     if (!bandOnly && run->regular) {
-      for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
-        const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
-        const Lanes value = relaxedRegular(x + i, b + i, stride, left);
-        left = nextLeft;
-        store(x + i, lanesOfColour(level, i, j, colour) ? value : old);
-      }
+      left = sweepRegularRun(level, x, b, *run, left, j, colour);
     } else {
       for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
         const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);

@@ -7,7 +7,6 @@
 
 namespace smokebox {
 
-using multigrid::allLanes;
 using multigrid::kEmpty;
 using multigrid::kLanes;
 using multigrid::kRegular;
@@ -36,12 +35,12 @@ SMOKEBOX_INLINE Doubles sideFlux(const float* open, const float* velocity, const
   return share * doublesAt(velocity) + (1.0 - share) * doublesAt(wall);
 }
 
-/// Are all faces of 16 cells either open or closed?
-SMOKEBOX_INLINE bool wholeFaces(const float* ax, const float* ay, const float* ayAbove) {
+/// The cells whose faces are all either open or closed.
+SMOKEBOX_INLINE LaneMask wholeFaces(const float* ax, const float* ay, const float* ayAbove) {
   const auto whole = [](const Lanes& open) __attribute__((always_inline)) {
     return (open == 0.0f) | (open == 1.0f);
   };
-  return allLanes((whole(load(ax)) & whole(load(ax + 1))) & (whole(load(ay)) & whole(load(ayAbove))));
+  return (whole(load(ax)) & whole(load(ax + 1))) & (whole(load(ay)) & whole(load(ayAbove)));
 }
 
 }  // namespace
@@ -107,17 +106,18 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
   const std::uint8_t* kind = links.chunkRow(j);
   float* out = links.row(b, j);
   const Lanes zero = {};
+  const LaneMask all = zero == zero;
   Lanes flux = {}, speed = {};
   for (int c = 0; c < links.chunks; ++c) {
     const int first = c * kLanes;
     if (kind[c] & kEmpty) continue;
     const bool regular = kind[c] & kRegular;
-    Lanes net, left = load(ur + first), below = load(vr + first);
-    if (regular || wholeFaces(ax + first, ay + first, ayAbove + first)) {
-      // Neighbouring velocities are close: their differences are as good as exact in float32. Closed faces
-      // hold the wall's.
-      net = (left - load(ur + first + 1)) + (below - load(va + first));
-    } else {
+    Lanes left = load(ur + first), below = load(vr + first);
+    // Neighbouring velocities are close: their differences are as good as exact in float32. Closed faces hold
+    // the wall's.
+    Lanes net = (left - load(ur + first + 1)) + (below - load(va + first));
+    const LaneMask whole = regular ? all : wholeFaces(ax + first, ay + first, ayAbove + first);
+    if (!regular && !multigrid::allLanes(whole)) {
       // The row may end within these 16 cells: what lies beyond has no links, and counts as 0.
       alignas(64) float sums[kLanes], right[kLanes];
       for (int k = 0; k < kLanes; ++k) right[k] = wallU[first + k + 1];
@@ -129,7 +129,7 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
             (sideFlux(ay + i, vr + i, wallV + i) - sideFlux(ayAbove + i, va + i, wallVAbove + i));
         *reinterpret_cast<HalfChunk*>(sums + k) = __builtin_convertvector(sum, HalfChunk);
       }
-      net = load(sums);
+      net = whole ? net : load(sums);
     }
     if (!regular) {
       net = load(id + first) > zero ? net : zero;
