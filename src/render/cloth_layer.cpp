@@ -78,10 +78,17 @@ void ClothLayer::drawLines(const ClothPicture& cloth, const Color& color, double
   const Color hemColor = mixed(color, frame.darkGround ? Color{1, 1, 1} : Color{0, 0, 0}, 0.35);
   const StrokeBatch::Look hem{std::max(1.6, kHemUnits * frame.unit), linear(hemColor, opacity)};
   for (const std::vector<int>& loop : hemOf(cloth)) palette_.strokes.addLoop(pointsOf(loop), hem);
+  const StrokeBatch::Look loose{1.3 * hem.width, linear(color, opacity)};
+  std::vector<char> held(cloth.positions.size(), 0);
+  for (const auto& [a, b] : cloth.threads) {
+    palette_.strokes.add({pixels_[a], pixels_[b]}, loose);
+    held[a] = held[b] = 1;
+  }
   palette_.strokes.flush();
   for (const int node : looseNodes(cloth))
-    palette_.sprites.addDisk(pixels_[node], std::max(cloth.radius * frame.scale, kLooseUnits * frame.unit),
-                             linear(color, opacity));
+    if (!held[node])
+      palette_.sprites.addDisk(pixels_[node], std::max(cloth.radius * frame.scale, kLooseUnits * frame.unit),
+                               linear(color, opacity));
   palette_.sprites.flush();
 }
 

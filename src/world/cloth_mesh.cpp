@@ -163,6 +163,18 @@ void ClothMesh::capture(const RigidSystem& system, int index, ClothPicture& pict
   picture.whole = whole_;
   picture.positions.resize(bodies_.size());
   for (std::size_t k = 0; k < bodies_.size(); ++k) picture.positions[k] = system.position(bodies_[k]);
+  picture.threads.clear();
+  const int columns = picture.columns, rows = picture.rows;
+  const auto whole = [&](int i, int j) {
+    return i >= 0 && j >= 0 && i + 1 < columns && j + 1 < rows &&
+           whole_[i + static_cast<std::size_t>(j) * (columns - 1)];
+  };
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int k = node(i, j);
+      if (right_[k].there && !whole(i, j) && !whole(i, j - 1)) picture.threads.push_back({k, k + 1});
+      if (up_[k].there && !whole(i, j) && !whole(i - 1, j)) picture.threads.push_back({k, k + columns});
+    }
 }
 
 }  // namespace smokebox

@@ -14,8 +14,12 @@ void RigidStage::record(StepFigures& figures) const {
   figures.angularMomentum = totals.angularMomentum;
   figures.energyBodies = totals.kineticEnergy;
   figures.energyPotential = totals.potentialEnergy;
-  // Two that have met and parted within the step have touched, too.
-  figures.contacts = std::max(totals.contacts, static_cast<int>(system_.touches().size()));
+  // Two that have met and parted within the step have touched, too; touches of a pair follow each other.
+  int pairs = 0;
+  const std::vector<Touch>& touches = system_.touches();
+  for (std::size_t k = 0; k < touches.size(); ++k)
+    pairs += k == 0 || touches[k].a != touches[k - 1].a || touches[k].b != touches[k - 1].b;
+  figures.contacts = std::max(totals.contacts, pairs);
   figures.overlap = totals.overlap;
   for (const Body& body : bodies_) {
     if (body.spec.particle || !isThere(body)) continue;

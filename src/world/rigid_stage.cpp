@@ -144,13 +144,15 @@ void RigidStage::keepPast(double time, double dt) {
 /// Two that scrape along each other or rattle would leave a mark at every step, one upon another: a pair that
 /// has one gets the next when that has faded, or for a blow that is much stronger.
 void RigidStage::keepImpact(const Touch& touch, double time) {
-  constexpr double kStronger = 3;
-  const auto [last, first] = lastImpacts_.try_emplace({touch.a, touch.b}, LastImpact{touch.impulse, time});
+  constexpr double kStronger = 3, kNear = 0.02;  // kNear: of the domain's height
+  const LastImpact now{touch.impulse, time, touch.point};
+  const auto [last, first] = lastImpacts_.try_emplace({touch.a, touch.b}, now);
   if (!first) {
     LastImpact& was = last->second;
-    const bool sameStep = time - was.time < 0.5 * dt_;  // it may touch in several places
-    if (!sameStep && touch.impulse < kStronger * was.impulse) return;
-    was = {sameStep ? std::max(was.impulse, touch.impulse) : touch.impulse, time};
+    const bool sameStep = time - was.time < 0.5 * dt_;
+    const bool elsewhere = sameStep && length(touch.point - was.point) > kNear * walls_.height;
+    if (!elsewhere && touch.impulse < kStronger * was.impulse) return;
+    was = now;
   }
   impacts_.push_back({touch, time});
 }

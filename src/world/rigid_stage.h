@@ -143,6 +143,7 @@ class RigidStage {
   std::deque<KeptTouch> impacts_;
   struct LastImpact {
     double impulse, time;
+    Vec2 point;
   };
   std::map<std::pair<int, int>, LastImpact> lastImpacts_;  // of each pair, while its mark is seen
   std::vector<std::deque<Vec2>> trails_;

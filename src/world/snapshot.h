@@ -71,11 +71,12 @@ struct JointPicture {
 
 struct ClothPicture {
   std::string name;
-  int index = 0;                // in SceneSpec::cloths
-  int columns = 0, rows = 0;    // of particles
-  std::vector<Vec2> positions;  // row by row from the lower left
-  std::vector<char> whole;      // of the (columns - 1) x (rows - 1) cells; a torn one is 0
-  double radius = 0;            // of a particle
+  int index = 0;                            // in SceneSpec::cloths
+  int columns = 0, rows = 0;                // of particles
+  std::vector<Vec2> positions;              // row by row from the lower left
+  std::vector<char> whole;                  // of the (columns - 1) x (rows - 1) cells; a torn one is 0
+  std::vector<std::array<int, 2>> threads;  // neighbours that still hold each other beside no whole cell
+  double radius = 0;                        // of a particle
   std::optional<Color> color;
 };
 
