@@ -90,6 +90,7 @@ void MaskPainter::measureDistances(const PixelOutlines& outlines, const Box& box
       const Vec2 a = outline[k] - corner, b = outline[(k + 1) % outline.size()] - corner;
       const Vec2 along = b - a;
       const double length2 = dot(along, along), perLength2 = length2 > 0 ? 1 / length2 : 0;
+      const double perRow = along.y != 0 ? 1 / along.y : 0;
       const double low = std::min(a.y, b.y) - reach, high = std::max(a.y, b.y) + reach;
       if (high < 0 || low > height - 1) continue;
       const int pastRow = static_cast<int>(std::min(std::floor(high), height - 1.0)) + 1;
@@ -97,7 +98,7 @@ void MaskPainter::measureDistances(const PixelOutlines& outlines, const Box& box
         // The part of the edge that is within reach of this row bounds the columns that need a look.
         double s0 = 0, s1 = 1;
         if (along.y != 0) {
-          const double p = (row - reach - a.y) / along.y, q = (row + reach - a.y) / along.y;
+          const double p = (row - reach - a.y) * perRow, q = (row + reach - a.y) * perRow;
           s0 = std::clamp(std::min(p, q), 0.0, 1.0);
           s1 = std::clamp(std::max(p, q), 0.0, 1.0);
         }
