@@ -106,6 +106,13 @@ double SpringSet::solve(Bodies& bodies, double h) {
   return change;
 }
 
+long SpringSet::sweepCost() const {
+  constexpr long kAtOnce = 20;  // springs of a sheet that take as long as a point
+  long springs = 0;
+  for (const SpringSheet& sheet : sheets_) springs += sheet.count();
+  return springs / kAtOnce;
+}
+
 void SpringSet::endStep(Bodies& bodies) {
   for (SpringSheet& sheet : sheets_) sheet.endStep(bodies);
   if (carrying_) {

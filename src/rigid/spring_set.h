@@ -29,6 +29,8 @@ class SpringSet {
   void warmStart(Bodies& bodies, double h);
   /// One sweep over all; the largest change of a relative velocity, m/s.
   double solve(Bodies& bodies, double h);
+  /// Of a sweep, in points of contact that would take as long.
+  long sweepCost() const;
   void endStep(Bodies& bodies);
 
   /// N, of the last sub-step; positive: it pulls.

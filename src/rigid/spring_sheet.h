@@ -32,6 +32,7 @@ class SpringSheet {
   /// The largest change of a velocity, m/s.
   double solve(Bodies& bodies);
   void endStep(const Bodies& bodies);
+  int count() const { return static_cast<int>(links_.size()); }
 
   /// N, of the last sub-step.
   double tension(int spring) const;
@@ -74,7 +75,7 @@ class SpringSheet {
   double size_ = 0, total_ = 0, unit_ = 1;                // mean length; mass of what moves, all and the mean
   long iterations_ = 0;
   bool free_ = false;     // no node is fixed
-  bool settled_ = false;  // as long as the velocities are left_
+  bool settled_ = false;  // has been solved in this sub-step
 };
 
 }  // namespace smokebox

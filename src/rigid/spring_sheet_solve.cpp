@@ -9,7 +9,8 @@ namespace smokebox {
 
 namespace {
 
-constexpr int kMostIterations = 40;
+// In the first sweep of a sub-step, and in one that follows on contacts, which will push again anyway.
+constexpr int kMostIterations = 40, kMostAgain = 10;
 // It stops when the velocities that are still missing are this share of those that the springs make in a
 // sub-step, or this share of a spring's length in a sub-step.
 constexpr double kTolerance = 1e-3, kSmallest = 1e-10;
@@ -90,7 +91,8 @@ double SpringSheet::conjugateGradients(double left, double enough, double scale)
   bands_.makeField(change_);
   bands_.makeField(direction_);
   turn(0);
-  for (int iteration = 0; iteration < kMostIterations && left > enough; ++iteration) {
+  const int most = settled_ ? kMostAgain : kMostIterations;
+  for (int iteration = 0; iteration < most && left > enough; ++iteration) {
     ++iterations_;
     const double along = left / bands_.multiply(matrices_, share_.data(), direction_, step_);
     const double next = advance(static_cast<float>(along));
@@ -119,7 +121,8 @@ double SpringSheet::solve(Bodies& bodies) {
   double meanX = 0, meanY = 0;
   if (free_)
     for (int k = 0; k < count; ++k) meanX -= rest_.x()[k] / scale, meanY -= rest_.y()[k] / scale;
-  if (conjugateGradients(units * missing, units * enough, scale) > units * enough) keepEnergy(bodies, scale);
+  const double still = conjugateGradients(units * missing, units * enough, scale);
+  if (still > units * enough && !settled_) keepEnergy(bodies, scale);
   const float *changeX = change_.x(), *changeY = change_.y();
   if (free_) {
     for (int k = 0; k < count; ++k) meanX += mass_[k] * changeX[k], meanY += mass_[k] * changeY[k];

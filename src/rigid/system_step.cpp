@@ -314,17 +314,17 @@ void RigidSystem::State::solveContacts(double h) {
   long left = few ? kManySweepsOfFew : kManySweeps;
   for (int round = 0; round < 3; ++round) {
     prepare(bodies, narrow.lively(), h);
-    const long work = points();
+    const long work = points(), cost = work + springs.sweepCost();
     conjugate.restart();
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       if (accelerates && sweeps >= kPlainSweeps) conjugate.remember(bodies, blocks, spare, narrow.lively());
       const double change = sweep(h, round == 0 && sweeps == 1);
-      left -= work;
+      left -= cost;
       if (sweeps == 1)
         settled =
             std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
       if (change <= settled) break;
-      if (left < work && (sweeps > 1 || work > kTwoSweeps)) break;
+      if (left < cost && (sweeps > 1 || work > kTwoSweeps)) break;
       if (accelerates && sweeps >= kPlainSweeps)
         conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
     }
