@@ -10,7 +10,7 @@ namespace {
 using Lanes = ContactBlocks::Lanes;
 constexpr int kColours = 64;
 // So few contacts would leave most lanes empty: they are solved one by one.
-constexpr int kFew = 24;
+constexpr int kFew = 12;
 // Within a colour: those that bear or not, of two points or one, for blocks are done, or left out, as a
 // whole.
 constexpr int kKinds = 4;

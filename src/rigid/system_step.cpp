@@ -15,7 +15,7 @@ namespace smokebox {
 namespace {
 // A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
 // are fewer than the second number.
-constexpr long kManySweeps = 6000, kManySweepsOfFew = 20000, kTwoSweeps = 30000;
+constexpr long kManySweeps = 6000, kManySweepsOfFew = 10000, kTwoSweeps = 30000;
 // Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
 constexpr double kSettled = 1e-3;
 // ... or by this share of what the first sweep changed beyond that: of impacts.
@@ -24,7 +24,7 @@ constexpr double kSettledShare = 1e-2;
 constexpr int kPlainSweeps = 3;
 // Both are this much less for a few points.
 constexpr double kSettledFew = 1e-8;
-constexpr long kFewPoints = 240;
+constexpr long kFewPoints = 160;
 // Of an overlap, in each sub-step.
 constexpr double kSeparateShare = 0.2;
 // Overlapping bodies are moved apart at this speed at most, m/s.
