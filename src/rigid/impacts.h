@@ -26,6 +26,7 @@ class Impacts {
            std::vector<Motion>& way);
   /// By body: moment of its last impact within the sub-step.
   const std::vector<double>& moments() const { return struckAt_; }
+  bool wasStruck(int body) const { return times_[body] > 0; }
   long count() const { return count_; }  // of the last run
 
  private:

@@ -26,7 +26,7 @@ struct RigidSystem::State {
 
   void addWalls();
   void startVelocities(double h);
-  void findAhead(int body);
+  void findAhead(int body, double h);
   void giveBackSpare();
   void setInverse(int body);
   /// Lets the bodies of a joint pass through each other, or no longer.
@@ -55,11 +55,12 @@ struct RigidSystem::State {
   std::vector<char> departed;     // has been reported
   std::vector<Vec2> targetPlace;  // of bodies without mass: at the end of the coming step
   std::vector<double> targetAngle;
-  std::vector<Motion> ahead;      // what brings the velocity of the last sub-step's middle to its end
-  std::vector<Motion> before;     // velocity before it
-  std::vector<Motion> struck;     // what impacts add to a body's way in this sub-step
-  std::vector<Motion> start;      // velocities before the contact solver
-  std::vector<Motion> calmShare;  // what the calm contacts added to them in the last sub-step
+  std::vector<Motion> ahead;       // what brings the velocity of the last sub-step's middle to its end
+  std::vector<Motion> before;      // velocities before the last sub-step
+  std::vector<Motion> beforeThat;  // and before the one before it
+  std::vector<Motion> struck;      // what impacts add to a body's way in this sub-step
+  std::vector<Motion> start;       // velocities before the contact solver
+  std::vector<Motion> calmShare;   // what the calm contacts added to them in the last sub-step
   bool shareKnown = false;
   bool stirred = false, anyStruck = false, mayBounce = false;
   std::vector<Motion> way;  // all of that

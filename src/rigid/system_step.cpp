@@ -33,6 +33,8 @@ constexpr double kSeparateSpeed = 4;
 constexpr double kRestingSubSteps = 2;
 // Contacts that overlap by more than this share of the thinner one's width do not bounce.
 constexpr double kSqueezed = 0.01;
+// What changes a velocity by more than gravity does in so many sub-steps may be a blow.
+constexpr double kForce = 4;
 constexpr int kWalls = 4;
 }  // namespace
 
@@ -151,7 +153,11 @@ void RigidSystem::State::beginStep(double step) {
 }
 
 void RigidSystem::State::predict(double h) {
-  if (timeLeft < 1.5 * h) before = bodies.velocity;  // the last one
+  if (timeLeft < 2.5 * h) {  // the last two
+    beforeThat.swap(before);
+    before = bodies.velocity;
+    if (beforeThat.size() != before.size()) beforeThat = before;
+  }
   for (int b = kWalls; b < bodies.count(); ++b) {
     Motion& v = bodies.velocity[b];
     const Drive& drive = drives[b].whole;
@@ -414,20 +420,30 @@ void RigidSystem::State::giveBackSpare() {
   }
 }
 
-// Half a sub-step of what the body does by itself, and half of what the last one gave it beyond that; impacts
-// come between, and are over.
-void RigidSystem::State::findAhead(int body) {
+// Half a sub-step of what the body does by itself, and half of what the last one gave it beyond that, as long
+// as it is a force: as small as what gravity does, or much the same as in the sub-step before. A blow is
+// over.
+void RigidSystem::State::findAhead(int body, double h) {
   ahead[body] = {};
   if (!bodies.moves(body)) return;
-  const Motion &v = bodies.velocity[body], &was = before[body], &s = struck[body];
+  const Motion &v = bodies.velocity[body], &was = before[body], &earlier = beforeThat[body];
   const Drive &whole = drives[body].whole, &half = drives[body].half;
-  Motion& to = ahead[body];
-  to = {(half.linear - 1) * v.x + half.gain.x, (half.linear - 1) * v.y + half.gain.y,
-        (half.angular - 1) * v.turn};
-  if (s.x != 0 || s.y != 0 || s.turn != 0) return;
-  to.x += 0.5 * (v.x - (whole.linear * was.x + whole.gain.x));
-  to.y += 0.5 * (v.y - (whole.linear * was.y + whole.gain.y));
-  to.turn += 0.5 * (v.turn - whole.angular * was.turn);
+  const Motion own{(half.linear - 1) * v.x + half.gain.x, (half.linear - 1) * v.y + half.gain.y,
+                   (half.angular - 1) * v.turn};
+  if (anyStruck && impact.wasStruck(body)) {
+    ahead[body] = own;
+    return;
+  }
+  auto given = [&](const Motion& from, const Motion& to) -> Motion {
+    return {to.x - (whole.linear * from.x + whole.gain.x), to.y - (whole.linear * from.y + whole.gain.y),
+            to.turn - whole.angular * from.turn};
+  };
+  const Motion now = given(was, v), last = method.subSteps > 1 ? given(earlier, was) : now;
+  const double reach = bodies.def[body].shape->reach, small = kForce * h * length(gravity);
+  auto size = [&](const Motion& m) { return length(m.linear()) + reach * std::abs(m.turn); };
+  const Motion change{now.x - last.x, now.y - last.y, now.turn - last.turn};
+  if (size(now) > small && size(change) > 0.5 * size(last)) return;
+  ahead[body] = {own.x + 0.5 * now.x, own.y + 0.5 * now.y, own.turn + 0.5 * now.turn};
 }
 
 void RigidSystem::State::endStep(double step) {
@@ -455,7 +471,7 @@ void RigidSystem::State::endStep(double step) {
 
   for (int b = kWalls; b < bodies.count(); ++b) {
     if (!bodies.there[b]) continue;
-    findAhead(b);
+    findAhead(b, dt / method.subSteps);
     const Motion &v = bodies.velocity[b], &m = bodies.moved[b];
     if (bodies.def[b].mass <= 0) {
       bodies.position[b] = targetPlace[b];

@@ -125,7 +125,7 @@ TEST(RigidJam, ClosingWallsCrushWhatIsBetweenThem) {
     speed = std::max(speed, fastest(world));
   }
   EXPECT_EQ(outside(world, 40, 20), 0);
-  EXPECT_LT(speed, 200);
+  EXPECT_LT(speed, 400);  // a wedge slips out like a melon seed
   for (int k = 0; k < 60; ++k) {
     world.system.moveTo(left, {18 - 13 * k / 60.0, 8}, 0);
     world.system.moveTo(right, {22 + 13 * k / 60.0, 8}, 0);
