@@ -145,8 +145,13 @@ void RigidStage::captureTouches(double time, Snapshot& snapshot) const {
   for (const KeptTouch& kept : impacts_)
     snapshot.touches.push_back(
         {kept.touch.point, kept.touch.normal, kept.touch.impulse, kept.touch.approach, time - kept.time});
-  for (const Touch& touch : system_.touches())
-    if (touch.approach == 0) snapshot.touches.push_back({touch.point, touch.normal, touch.impulse, 0, 0});
+  // What touches now; of a pair that rattles within the step its last blow, else its dot would flicker.
+  const std::vector<Touch>& now = system_.touches();
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const bool again = k + 1 < now.size() && now[k].a == now[k + 1].a && now[k].b == now[k + 1].b;
+    if (now[k].approach == 0 || !again)
+      snapshot.touches.push_back({now[k].point, now[k].normal, now[k].impulse, 0, 0});
+  }
 }
 
 void RigidStage::captureTrails(Snapshot& snapshot) const {
