@@ -5,6 +5,7 @@
 // Sums of a row go into 16 lanes, which are then added in a fixed order in float64.
 #pragma once
 #include <algorithm>
+#include <cstring>
 
 #include "fluid/multigrid_level.h"
 
@@ -23,9 +24,18 @@ SMOKEBOX_INLINE Lanes load(const float* p) { return *reinterpret_cast<const Lane
 SMOKEBOX_INLINE void store(float* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
 
 SMOKEBOX_INLINE double sumOfLanes(const Lanes& v) {
-  double pair[8];
-  for (int k = 0; k < 8; ++k) pair[k] = static_cast<double>(v[k]) + static_cast<double>(v[k + 8]);
-  return ((pair[0] + pair[4]) + (pair[2] + pair[6])) + ((pair[1] + pair[5]) + (pair[3] + pair[7]));
+  typedef float Half __attribute__((vector_size(32)));
+  typedef double Eight __attribute__((vector_size(64)));
+  typedef double Four __attribute__((vector_size(32)));
+  Half low, high;
+  std::memcpy(&low, &v, sizeof(low));
+  std::memcpy(&high, reinterpret_cast<const char*>(&v) + sizeof(low), sizeof(high));
+  const Eight pair = __builtin_convertvector(low, Eight) + __builtin_convertvector(high, Eight);
+  Four first, last;
+  std::memcpy(&first, &pair, sizeof(first));
+  std::memcpy(&last, reinterpret_cast<const char*>(&pair) + sizeof(first), sizeof(last));
+  const Four four = first + last;
+  return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
 SMOKEBOX_INLINE Lanes magnitude(const Lanes& v) {
@@ -41,10 +51,13 @@ SMOKEBOX_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
   return reinterpret_cast<const Lanes&>(z);
 }
 
+/// Of magnitudes.
 SMOKEBOX_INLINE float largestLane(const Lanes& v) {
-  float m = v[0];
-  for (int k = 1; k < kLanes; ++k) m = (v[k] > m || v[k] != v[k]) ? v[k] : m;
-  return m;
+  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  Lanes m = larger(v, __builtin_shuffle(v, place ^ 8));
+  m = larger(m, __builtin_shuffle(m, place ^ 4));
+  m = larger(m, __builtin_shuffle(m, place ^ 2));
+  return larger(m, __builtin_shuffle(m, place ^ 1))[0];
 }
 
 /// Are all lanes true?

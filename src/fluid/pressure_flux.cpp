@@ -50,32 +50,36 @@ PressureFlux::PressureFlux(const Boundary& boundary, ThreadPool& pool)
 
 void PressureFlux::closeFaces(const Boundary& boundary, const multigrid::Level& links, Field& u, Field& v) {
   const int nx = links.nx, ny = links.ny;
-  const auto closeV = [&](int j, int first, int last) {
-    const float* open = links.row(links.ay, j);
-    const float* wall = boundary.wallV.row(j);
-    float* velocity = v.row(j);
-    for (int i = first; i < last; ++i) velocity[i] = open[i] > 0 ? velocity[i] : wall[i];
+  const auto close =
+      [](float* velocity, const float* open, const float* wall, int inside) __attribute__((always_inline)) {
+    const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const Lanes old = load(velocity);
+    store(velocity, (load(open) > 0.0f) | (place >= inside) ? old : load(wall));
   };
   forRows(pool_, boundary.grid.cells(), 0, ny, [&](int j) {
-    const float* open = links.row(links.ax, j);
-    const float* wall = boundary.wallU.row(j);
-    float* velocity = u.row(j);
+    const float *open = links.row(links.ax, j), *openBelow = links.row(links.ay, j);
+    const float *wall = boundary.wallU.row(j), *wallBelow = boundary.wallV.row(j);
+    float *velocity = u.row(j), *below = v.row(j);
     const std::uint8_t* kind = links.chunkRow(j);
     for (int c = 0; c < links.chunks; ++c) {
       if (kind[c] & kRegular) continue;
-      const int first = c * kLanes, last = std::min(first + kLanes, nx);
-      for (int i = first; i < last; ++i) velocity[i] = open[i] > 0 ? velocity[i] : wall[i];
-      closeV(j, first, last);
+      const int first = c * kLanes;
+      close(velocity + first, open + first, wall + first, nx - first);
+      close(below + first, openBelow + first, wallBelow + first, nx - first);
     }
     if (links.periodicX)
       velocity[nx] = velocity[0];
     else if (!(open[nx] > 0))
       velocity[nx] = wall[nx];
   });
-  if (links.periodicY)
+  if (links.periodicY) {
     std::copy_n(v.row(0), nx, v.row(ny));
-  else
-    closeV(ny, 0, nx);
+    return;
+  }
+  for (int c = 0; c < links.chunks; ++c) {
+    const int first = c * kLanes;
+    close(v.row(ny) + first, links.row(links.ay, ny) + first, boundary.wallV.row(ny) + first, nx - first);
+  }
 }
 
 PressureFlux::Largest PressureFlux::measure(const Boundary& boundary, const multigrid::Level& links,
