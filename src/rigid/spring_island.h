@@ -15,6 +15,7 @@ struct Spring {
   SpringDef def;
   bool there = true;
   bool started = false;  // `between` is set
+  bool fresh = true;     // has not pulled yet
   double impulse = 0;    // of the last sub-step along the line; negative: it pulls, N s
   Vec2 line{1, 0};       // from `from` to `to`
   Vec2 between;          // to - from, at the start of the last sub-step

@@ -131,6 +131,40 @@ void SpringSet::endStep(Bodies& bodies) {
   }
 }
 
+void SpringSet::push(int spring, Bodies& bodies, double share, const std::vector<char>* fresh) const {
+  const Spring& s = springs_[spring];
+  if (!s.there || (spring < static_cast<int>(sheetOf_.size()) && sheetOf_[spring] >= 0)) return;
+  const Anchor* ends[2] = {&s.def.from, &s.def.to};
+  Vec2 arms[2];
+  double inertia = 0;
+  for (int e = 0; e < 2; ++e) {
+    if (ends[e]->body < 0) continue;
+    arms[e] = rotate(bodies.frameNow(ends[e]->body).turn, ends[e]->at);
+    const InverseMass& m = bodies.inverse[ends[e]->body];
+    inertia += m.mass + m.inertia * cross(arms[e], s.line) * cross(arms[e], s.line);
+  }
+  // Only where the sub-step follows the spring: what is stiffer is brought to rest at once.
+  const double part = share * (1 - smoothStep((h_ * h_ * s.def.stiffness * inertia - 0.25) / 0.75));
+  for (int e = 0; e < 2; ++e)
+    if (ends[e]->body >= 0 && (!fresh || s.fresh || ((*fresh)[ends[e]->body] & 1)))
+      bodies.push(ends[e]->body, arms[e], (e == 0 ? -part : part) * s.impulse * s.line);
+}
+
+void SpringSet::takeBackHalf(Bodies& bodies, const std::vector<char>& fresh, double h) {
+  h_ = h;
+  for (int k = 0; k < count(); ++k) {
+    Spring& spring = springs_[k];
+    auto isFresh = [&](int body) { return body >= 0 && (fresh[body] & 1); };
+    if (spring.fresh || isFresh(spring.def.from.body) || isFresh(spring.def.to.body))
+      push(k, bodies, -0.5, &fresh);
+    spring.fresh = false;
+  }
+}
+
+void SpringSet::giveHalf(int spring, Bodies& bodies) const {
+  if (!springs_[spring].fresh) push(spring, bodies, 0.5, nullptr);
+}
+
 double SpringSet::tension(int spring) const {
   if (!(h_ > 0) || !springs_[spring].there) return 0;
   const int sheet = spring < static_cast<int>(sheetOf_.size()) ? sheetOf_[spring] : -1;

@@ -32,6 +32,11 @@ class SpringSet {
   /// Of a sweep, in points of contact that would take as long.
   long sweepCost() const;
   void endStep(Bodies& bodies);
+  /// After the first sub-step: velocities that belong to its middle have had half of it, where the spring is
+  /// new, or the body's velocity was set (1 in `fresh`).
+  void takeBackHalf(Bodies& bodies, const std::vector<char>& fresh, double h);
+  /// The other half of the last sub-step, for a spring that is cut.
+  void giveHalf(int spring, Bodies& bodies) const;
 
   /// N, of the last sub-step; positive: it pulls.
   double tension(int spring) const;
@@ -47,6 +52,7 @@ class SpringSet {
  private:
   void layOut(const Bodies& bodies);
   double distance(int spring, const Bodies& bodies) const;
+  void push(int spring, Bodies& bodies, double share, const std::vector<char>* fresh) const;
 
   std::vector<Spring> springs_;
   std::vector<SpringIsland> islands_;

@@ -74,7 +74,19 @@ int RigidSystem::addJoint(const JointDef& def) {
   state_->setJoined(def, true);
   return state_->joints.add(def, state_->bodies);
 }
-void RigidSystem::removeSpring(int spring) { state_->springs.remove(spring); }
+void RigidSystem::removeSpring(int spring) {
+  State& s = *state_;
+  if (!s.springs.isThere(spring)) return;
+  const std::vector<Motion> was = s.bodies.velocity;
+  s.springs.giveHalf(spring, s.bodies);
+  // The velocity of now has this half already.
+  for (int b = 0; b < s.bodies.count(); ++b) {
+    const Motion &v = s.bodies.velocity[b], &w = was[b];
+    Motion& to = s.ahead[b];
+    to = {to.x - (v.x - w.x), to.y - (v.y - w.y), to.turn - (v.turn - w.turn)};
+  }
+  s.springs.remove(spring);
+}
 void RigidSystem::removeJoint(int joint) {
   State& s = *state_;
   if (s.joints.isThere(joint)) s.setJoined(s.joints.def(joint), false);

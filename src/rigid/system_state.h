@@ -62,6 +62,7 @@ struct RigidSystem::State {
   std::vector<Motion> start;       // velocities before the contact solver
   std::vector<Motion> calmShare;   // what the calm contacts added to them in the last sub-step
   bool shareKnown = false;
+  bool firstOfStep = false;  // sub-step
   bool stirred = false, anyStruck = false, mayBounce = false;
   std::vector<Motion> way;  // all of that
 

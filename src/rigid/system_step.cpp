@@ -99,6 +99,7 @@ RigidSystem::State::Drive RigidSystem::State::driveOver(const BodyDef& def, doub
 // Velocities belong to the middle of a sub-step: those that were set are taken half of one back, and where
 // gravity has changed, what it did to the last half is put right.
 void RigidSystem::State::startVelocities(double h) {
+  firstOfStep = true;
   constexpr double kLeast = 1e-6;  // of a velocity; what is damped more has no past to come from
   drives.resize(bodies.count());
   for (int b = kWalls; b < bodies.count(); ++b) {
@@ -124,7 +125,6 @@ void RigidSystem::State::startVelocities(double h) {
       v.y += was.gain.y - now.gain.y;
     }
     if (fresh[b] & 2) v.turn /= std::max(now.angular, kLeast);
-    fresh[b] = 0;
   }
 }
 
@@ -342,6 +342,11 @@ void RigidSystem::State::solveContacts(double h) {
     for (std::size_t k = 0; k < spare.size(); ++k)
       if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
     narrow.refresh(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
+  }
+  if (firstOfStep) {
+    if (!springs.empty()) springs.takeBackHalf(bodies, fresh, h);
+    std::fill(fresh.begin(), fresh.end(), 0);
+    firstOfStep = false;
   }
   if (!joints.empty()) yieldTorn();
   narrow.yieldCrushed(bodies, start);

@@ -151,5 +151,34 @@ TEST(RigidFree, DampingDecaysExponentially) {
   }
 }
 
+TEST(RigidFree, ASpringPullsFromTheMomentThatItIsThereToThatOfItsEnd) {
+  // Truth: x = cos(w t) from a stretch of 1 m at rest, w = 3; from the moment at which it is cut straight on;
+  // and hung on again, at a new velocity, x cos(w t) + v/w sin(w t).
+  RigidWorld world;
+  const int body = world.add(bodyAt(bodyShape(CircleShape{0.1}), {51, 50}, 2));
+  SpringDef def;
+  def.from = {body, {}}, def.to = {-1, {50, 50}};
+  def.stiffness = 18;
+  const int spring = world.system.addSpring(def);
+  for (int k = 1; k <= 60; ++k) {
+    world.steps(1);
+    EXPECT_NEAR(world.at(body).x, 50 + std::cos(3 * k * RigidWorld::kStep), 1e-6) << k;
+  }
+  world.system.removeSpring(spring);
+  const double x = world.at(body).x, v = world.velocity(body).x;
+  EXPECT_NEAR(v, -3 * std::sin(3.0), 1e-4);
+  world.seconds(1);
+  EXPECT_NEAR(world.at(body).x, x + v, 1e-12);
+  EXPECT_NEAR(world.velocity(body).x, v, 1e-12);
+  const double from = world.at(body).x - 50;
+  world.system.addSpring(def);
+  world.system.setVelocity(body, {2, 0});
+  for (int k = 1; k <= 60; ++k) {
+    world.steps(1);
+    const double phase = 3 * k * RigidWorld::kStep;
+    EXPECT_NEAR(world.at(body).x, 50 + from * std::cos(phase) + 2.0 / 3 * std::sin(phase), 1e-6) << k;
+  }
+}
+
 }  // namespace
 }  // namespace smokebox::test
