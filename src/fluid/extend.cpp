@@ -290,10 +290,19 @@ void VelocityExtension::reveal(const Hidden& hidden, Field& u, Field& v) const {
 void VelocityExtension::holdCovered(const Boundary& boundary, Field& u, Field& v, double coefficient) const {
   auto hold = [&](const Component& c, const std::vector<CutLink>& links, Field& f) {
     float* data = f.row(0);
-    for (const CoveredFace& face : c.surface.held) {
-      const float wall = links[face.link].velocity, goal = wall + face.share * (data[face.source] - wall);
-      const float pull = static_cast<float>(coefficient) * face.stiffness;
-      data[face.target] = (data[face.target] + pull * goal) / (1 + pull);
+    const auto& held = c.surface.held;
+    for (std::size_t k = 0; k < held.size();) {
+      // All that pull at one face do so at once: mirror images may have them in another order.
+      const int target = held[k].target;
+      float pulls = 0, goals = 0;
+      for (; k < held.size() && held[k].target == target; ++k) {
+        const CoveredFace& face = held[k];
+        const float wall = links[face.link].velocity, goal = wall + face.share * (data[face.source] - wall);
+        const float pull = static_cast<float>(coefficient) * face.stiffness;
+        pulls += pull;
+        goals += pull * goal;
+      }
+      data[target] = (data[target] + goals) / (1 + pulls);
     }
   };
   hold(u_, boundary.linksU, u);

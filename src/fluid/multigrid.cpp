@@ -1,11 +1,14 @@
 #include "fluid/multigrid.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "fluid/multigrid_kernels.h"
+#include "fluid/multigrid_parents.h"
 
 namespace smokebox {
 
+using multigrid::Joining;
 using multigrid::Level;
 
 namespace {
@@ -19,9 +22,11 @@ template <bool bandOnly, bool start = false>
 void sweepUnit(Level& level, int j, int colour) {
   if (level.hasMiddleRows() && level.inMiddleRows(j))
     multigrid::MiddleRows(level).sweep<bandOnly, start>(colour);
-  else if constexpr (start)
+  else if constexpr (start) {
     startRow(level, j);
-  else
+    multigrid::solveSpecialPairs<true>(level, j, colour);
+    level.wrapRow(level.row(level.x, j));
+  } else
     multigrid::sweepRow<bandOnly>(level, j, colour);
 }
 
@@ -71,19 +76,28 @@ void Multigrid::shape(const Boundary& boundary) {
     Level& level = levels_.back();
     level.shape(m, n, px, py, pool_.threads() > 1 || py);
     level.unit = unit;
-    // Widths are exact: the last block may be smaller. The value beyond an open side sits half a fine cell
-    // outside.
-    const auto measure = [&](int count, int cells, bool periodic, std::vector<double>& width,
+    // The value beyond an open side sits half a fine cell outside. Where three blocks make one, centres are
+    // taken as no more than twice as far apart as those of the finer level: see the top of the header.
+    const auto measure = [&](int cells, bool periodic, const std::vector<double>* finerWidth,
+                             const std::vector<double>* finerDistance, std::vector<double>& width,
                              std::vector<double>& distance) {
-      width.resize(count);
-      distance.resize(count + 1);
-      for (int k = 0; k < count; ++k) width[k] = std::min((k + 1) * unit, cells) - k * unit;
-      for (int k = 1; k < count; ++k) distance[k] = 0.5 * (width[k - 1] + width[k]);
-      distance[0] = 0.5 * (width[0] + (periodic ? width[count - 1] : 1));
-      distance[count] = periodic ? distance[0] : 0.5 * (width[count - 1] + 1);
+      const Joining join(finerWidth ? static_cast<int>(finerWidth->size()) : 0);
+      width.assign(cells, 1);
+      for (int k = 0; k < cells && finerWidth; ++k)
+        width[k] = std::accumulate(finerWidth->begin() + join.begin(k),
+                                   finerWidth->begin() + join.begin(k + 1), 0.0);
+      distance.resize(cells + 1);
+      for (int k = 1; k < cells; ++k) distance[k] = 0.5 * (width[k - 1] + width[k]);
+      distance[0] = 0.5 * (width[0] + (periodic ? width[cells - 1] : 1));
+      distance[cells] = periodic ? distance[0] : 0.5 * (width[cells - 1] + 1);
+      for (int k = 0; k <= cells && finerDistance; ++k)
+        distance[k] = std::min(distance[k], 2 * (*finerDistance)[join.begin(k)]);
     };
-    measure(m, nx, px, level.widthX, level.distanceX);
-    measure(n, ny, py, level.widthY, level.distanceY);
+    const Level* finer = levels_.size() > 1 ? &levels_[levels_.size() - 2] : nullptr;
+    measure(m, px, finer ? &finer->widthX : nullptr, finer ? &finer->distanceX : nullptr, level.widthX,
+            level.distanceX);
+    measure(n, py, finer ? &finer->widthY : nullptr, finer ? &finer->distanceY : nullptr, level.widthY,
+            level.distanceY);
     const auto nominal = [&](const std::vector<double>& width, const std::vector<double>& distance,
                              std::vector<float>& size, std::vector<float>& near) {
       size.assign(width.size() + 2 * multigrid::kLanes, 0);
@@ -97,11 +111,11 @@ void Multigrid::shape(const Boundary& boundary) {
     for (int i = 0; i < static_cast<int>(level.slackX.size()); ++i)
       if (i == 0 || i >= m) level.slackX[i] = 1e9f;
     if (m == 1 && n == 1) break;
-    m = (m + 1) / 2;
-    n = (n + 1) / 2;
+    m = Joining::joined(m);
+    n = Joining::joined(n);
     unit *= 2;
   }
-  zeroRow_.assign(levels_.front().residualStride, 0);
+  zeroRow_.assign(levels_.front().residualStride + 2 * multigrid::kLanes, 0);
   rowSums_.assign(ny, 0);
 }
 
@@ -216,16 +230,15 @@ void Multigrid::inOrder(Level& level, int sweepsBegin, int sweepsEnd, int stages
 void Multigrid::descend(std::size_t l) {
   Level& level = levels_[l];
   Level* coarse = l + 1 < levels_.size() ? &levels_[l + 1] : nullptr;
-  const int ny = level.ny;
   const bool whole = shared(level) || level.periodicY;  // all rows of the residual are kept
   inOrder(
       level, 0, kSweeps, coarse ? kSweeps + 1 : kSweeps, [&](int s, int j) { sweepDown(level, s, j); },
       [&](int, int j) {
         residualOfRow(level, j);
-        if (!whole && (j % 2 == 1 || j == ny - 1)) restrictRow(level, *coarse, j / 2, zeroRow_.data());
+        const int J = level.joinY.coarse(j);
+        if (!whole && j + 1 == level.joinY.begin(J + 1)) restrictRow(level, *coarse, J, zeroRow());
       });
-  if (coarse && whole)
-    rows(level, 0, coarse->ny, [&](int J) { restrictRow(level, *coarse, J, zeroRow_.data()); });
+  if (coarse && whole) rows(level, 0, coarse->ny, [&](int J) { restrictRow(level, *coarse, J, zeroRow()); });
 }
 
 void Multigrid::ascend(std::size_t l) {

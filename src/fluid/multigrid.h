@@ -11,9 +11,11 @@
 // coarsened down to one block. Cells without an open face, and regions without an open side at the coarsest
 // level, get 0 from there: b must add up to 0 over each sealed region.
 //
-// The colours are mirrored about the middle of an even number of columns and of an even number of rows: a
-// problem that is mirrored left to right (or up to down) has the mirrored solution to the bit, where the
-// columns (or rows) halve down to one and no block beside the middle is split.
+// A problem that is mirrored left to right (or up to down) has the mirrored solution to the bit, for any
+// number of columns and rows: colours and the joining of blocks are mirrored about the middle (see Level),
+// every unknown is a sum of what lies along x and of what lies along y whichever way it is stored, and so is
+// what a sweep along solids covers. Not so across periodic sides, left to right for those on the left and
+// right.
 //
 // All sweeps of a level run in one pass over its rows, each row as soon as its neighbours are ready; several
 // threads do so in bands of rows, each sweep a row further from the border than the last, and then what is
@@ -76,6 +78,7 @@ class Multigrid {
   std::vector<int> sealedBegin_;  // its unknowns, region by region
   std::vector<int> sealedAt_;
   std::vector<std::vector<int>> labels_;  // scratch of listSealed, by level
+  const float* zeroRow() const { return zeroRow_.data() + multigrid::kLanes; }
   std::vector<float> zeroRow_;
   std::vector<double> rowSums_;
 };

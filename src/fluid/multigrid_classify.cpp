@@ -11,6 +11,25 @@ constexpr float kSlack = 1e-4f, kAnything = 1e9f;
 
 }  // namespace
 
+// The cells of chunk c that lie in a chunk near a solid, if chunks are counted from the right end of the row.
+std::uint16_t Builder::bandCellsOf(const Level& level, int c) const {
+  unsigned any = 0, bits = 0;
+  for (int k = std::max(0, c - 2); k <= std::min(level.chunks - 1, c + 2); ++k) any |= near_[k];
+  if (!any) return 0;
+  const int begin = c * kLanes;
+  for (int last = level.nx - (level.nx - begin - 1) / kLanes * kLanes; last - kLanes < begin + kLanes;
+       last += kLanes) {
+    const int first = last - kLanes;
+    bool near = false;
+    for (int i = std::max(0, first - 2); i < std::min(level.nx, last + 2) && !near; ++i)
+      near = (near_[i / kLanes] >> (i % kLanes)) & 1;
+    if (!near) continue;
+    for (int i = std::max(begin, first); i < std::min({begin + kLanes, last, level.nx}); ++i)
+      bits |= 1u << (i - begin);
+  }
+  return static_cast<std::uint16_t>(bits);
+}
+
 // Inverse diagonal, kind of each chunk, and the band along solids.
 void Builder::classify(Level& level) {
   disturbed_.assign(level.chunk.size(), 0);
@@ -51,20 +70,51 @@ void Builder::classify(Level& level) {
       disturbed_[k] = static_cast<std::uint16_t>(bitsOf(beside));
     }
   }
+  const auto disturb = [&](int i, int j) {
+    if (i < 0 || i >= level.nx || j < 0 || j >= level.ny) return;
+    std::uint16_t& bits = disturbed_[j * level.chunks + i / kLanes];
+    bits = static_cast<std::uint16_t>(bits | (1u << (i % kLanes)));
+  };
+  for (int cell : level.extraCell) {
+    const int i = cell % level.nx, j = cell / level.nx;
+    disturb(i, j);
+    disturb(i - 1, j);
+    disturb(i + 1, j);
+    disturb(i, j - 1);
+    disturb(i, j + 1);
+  }
   for (int s = 0; s < static_cast<int>(level.specialAt.size()); ++s) {
     const int i = level.specialCell[s] % level.nx, j = level.specialCell[s] / level.nx;
-    const int k = j * level.chunks + i / kLanes;
-    level.chunk[k] = kGeneral;
-    disturbed_[k] = static_cast<std::uint16_t>(disturbed_[k] | (1u << (i % kLanes)));
+    level.chunk[j * level.chunks + i / kLanes] = kGeneral;
+    disturb(i, j);
     const int at = level.specialAt[s];
     if (at < level.extrasBegin)
       level.id[at] = -level.specialInverse[s];  // in use, but not by the rows' loops
   }
+  near_.assign(level.chunks, 0);
+  // Where three columns, or rows, make one, there is more to smooth: the two outer ones as beside solids.
+  if (level.joinX.shift > 0 && level.nx > 3)
+    for (int j = 0; j < level.ny; ++j) {
+      disturb(level.joinX.begin(level.joinX.middle), j);
+      disturb(level.joinX.begin(level.joinX.middle + 1) - 1, j);
+    }
+  if (level.joinY.shift > 0 && level.ny > 3)
+    for (int i = 0; i < level.nx; ++i) {
+      disturb(i, level.joinY.begin(level.joinY.middle));
+      disturb(i, level.joinY.begin(level.joinY.middle + 1) - 1);
+    }
   level.runs.clear();
   level.bandRuns.clear();
   for (int j = 0; j < level.ny; ++j) {
     level.runBegin[j] = static_cast<int>(level.runs.size());
     level.bandBegin[j] = static_cast<int>(level.bandRuns.size());
+    for (int c = 0; c < level.chunks; ++c) {
+      const int k = j * level.chunks + c;
+      unsigned near = disturbed_[k];
+      if (j > 0) near |= disturbed_[k - level.chunks];
+      if (j + 1 < level.ny) near |= disturbed_[k + level.chunks];
+      near_[c] = static_cast<std::uint16_t>(near);
+    }
     for (int c = 0; c < level.chunks; ++c) {
       const int k = j * level.chunks + c, i = c * kLanes;
       if (level.chunk[k] & kEmpty) continue;
@@ -75,11 +125,13 @@ void Builder::classify(Level& level) {
       else
         level.runs.push_back({i, i + kLanes, regular});
 
-      unsigned near = disturbed_[k];
-      if (j > 0) near |= disturbed_[k - level.chunks];
-      if (j + 1 < level.ny) near |= disturbed_[k + level.chunks];
-      if (c > 0) near |= disturbed_[k - 1] & 0xc000u;
-      if (c + 1 < level.chunks) near |= disturbed_[k + 1] & 0x3u;
+      unsigned near = near_[c];
+      if (c > 0) near |= near_[c - 1] & 0xc000u;
+      if (c + 1 < level.chunks) near |= near_[c + 1] & 0x3u;
+      if (!level.bandCells.empty()) {
+        level.bandCells[k] = near ? 0xffffu : bandCellsOf(level, c);
+        near = level.bandCells[k];
+      }
       if (!near) continue;
       level.chunk[k] |= kBand;
       if (level.bandBegin[j] < static_cast<int>(level.bandRuns.size()) && level.bandRuns.back().end == i)

@@ -87,6 +87,12 @@ SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int
   return mask ^ (place >= level.swapsAt - static_cast<int>(i));
 }
 
+/// The lanes of a chunk whose bits are set.
+SMOKEBOX_INLINE LaneMask lanesOfBits(std::uint16_t bits) {
+  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  return (place & static_cast<int>(bits)) != 0;
+}
+
 /// The new values of both colours in 16 cells; `left` are the values to the left of them.
 SMOKEBOX_INLINE Lanes relaxedGeneral(const float* x, const float* b, const float* ax, const float* ay,
                                      const float* id, std::ptrdiff_t stride, const Lanes& left) {
@@ -134,19 +140,34 @@ SMOKEBOX_INLINE Lanes sweepRegularRun(const Level& level, float* x, const float*
   return left;
 }
 
-/// The two columns of one colour in the middle of mirrored colours: solved together, from what a sweep made
-/// of each with the old value of the other.
+/// Where two cells have next to no link but that between them, they cannot be solved as one.
+constexpr float kMostOfPair = 0.98f;
+
+/// Two linked cells of one colour are solved as one, from what a sweep has made of each with the old value of
+/// the other. `overA`, `overB`: the link over the diagonal. What is none of the sweeps' over rows (special)
+/// is left as it is.
+SMOKEBOX_INLINE void solvePair(float& a, float& b, float overA, float overB, float wasA, float wasB) {
+  if (!(overA > 0 && overB > 0)) return;
+  const float both = overA * overB;
+  if (both > kMostOfPair) {
+    a = 0.5f * (a + wasA);
+    b = 0.5f * (b + wasB);
+    return;
+  }
+  const float p = a - overA * wasB, q = b - overB * wasA, scale = 1 / (1 - both);
+  a = (p + overA * q) * scale;
+  b = (q + overB * p) * scale;
+}
+
+/// The two columns of one colour in the middle of mirrored colours.
 struct MiddlePair {
   float left = 0, right = 0;  // old values
 
   void solve(Level& level, int j, float* x) const {
     const int b = level.swapsAt, a = b - 1;
     const std::ptrdiff_t at = level.at(b, j);
-    const float link = level.ax[at], overA = link * level.id[at - 1], overB = link * level.id[at];
-    if (!(overA > 0 && overB > 0)) return;
-    const float p = x[a] - overA * right, q = x[b] - overB * left, scale = 1 / (1 - overA * overB);
-    x[a] = (p + overA * q) * scale;
-    x[b] = (q + overB * p) * scale;
+    const float link = level.ax[at];
+    solvePair(x[a], x[b], link * level.id[at - 1], link * level.id[at], left, right);
   }
 };
 
@@ -155,24 +176,70 @@ template <bool bandOnly>
 inline bool sweepsMiddle(const Level& level, int j, int colour) {
   const int b = level.swapsAt, a = b - 1;
   if (b >= level.nx || level.inMiddleRows(j) || level.colourOf(b, j) != colour) return false;
-  const std::uint8_t *kind = level.chunkRow(j), first = kind[a / kLanes], second = kind[b / kLanes];
-  return bandOnly ? (first & second & kBand) != 0 : ((first | second) & kEmpty) == 0;
+  return !bandOnly || (level.inBand(a, j) && level.inBand(b, j));
 }
 
-/// A Gauss-Seidel sweep over one colour of row j. bandOnly: only the chunks near solids.
-template <bool bandOnly>
-inline void sweepRow(Level& level, int j, int colour) {
-  const std::vector<int>& begin = bandOnly ? level.bandBegin : level.runBegin;
-  if (begin[j] == begin[j + 1]) return;
-  const int first = level.specialBegin[2 * j + colour], last = level.specialBegin[2 * j + colour + 1];
-  float* values = level.x.data();
-  for (int s = first; s < last; ++s) {
-    float sum = level.b[level.specialAt[s]];
-    for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e)
-      sum += level.entries[e].weight * values[level.entries[e].to];
-    level.specialValue[s] = sum * level.specialInverse[s];
-  }
+/// What a special unknown's neighbours add up to: along x, then along y, and more than two to one side in
+/// float64, so that mirror images (which may keep the same link in a list or in the grid) add up in one
+/// order.
+struct SpecialSum {
+  float x, y;
+};
 
+SMOKEBOX_INLINE SpecialSum sumOfStar(const Level::Star& star, const float* values) {
+  const auto side = [&](int k) __attribute__((always_inline)) {
+    return star.weight[k] * values[star.to[k]] + star.weight[k + 1] * values[star.to[k + 1]];
+  };
+  return {side(0) + side(2), side(4) + side(6)};
+}
+
+inline SpecialSum sumOfLinks(const Level& level, int s) {
+  if (level.starred[s]) return sumOfStar(level.star[s], level.x.data());
+  double value[4] = {};
+  for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e) {
+    const Level::Entry& entry = level.entries[e];
+    value[static_cast<int>(entry.towards)] += static_cast<double>(entry.weight) * level.x[entry.to];
+  }
+  return {static_cast<float>(value[0]) + static_cast<float>(value[1]),
+          static_cast<float>(value[2]) + static_cast<float>(value[3])};
+}
+
+/// The values that a sweep gives the special unknowns of a row and colour, into specialValue.
+inline void relaxSpecials(Level& level, int j, int colour) {
+  const int end = level.specialBegin[2 * j + colour + 1];
+  for (int s = level.specialBegin[2 * j + colour]; s < end; ++s) {
+    const SpecialSum sum = sumOfLinks(level, s);
+    const int at = level.specialAt[s];
+    const float value = ((sum.x + sum.y) + level.b[at]) * level.specialInverse[s];
+    const float share = level.specialShare[s];
+    level.specialValue[s] = share < 1 ? level.x[at] + share * (value - level.x[at]) : value;
+  }
+}
+
+/// Solves the pairs of a row and colour as one, once both values are found. `start`: the first sweep.
+template <bool start>
+inline void solveSpecialPairs(Level& level, int j, int colour) {
+  const int end = level.specialPairBegin[2 * j + colour + 1];
+  for (int k = level.specialPairBegin[2 * j + colour]; k < end; ++k) {
+    const Level::SpecialPair& pair = level.specialPairs[k];
+    float &a = level.x[level.specialAt[pair.a]], &b = level.x[level.specialAt[pair.b]];
+    if (start)
+      solvePair(a, b, pair.overA, pair.overB, 0, 0);
+    else
+      solvePair(level.specialValue[pair.a], level.specialValue[pair.b], pair.overA, pair.overB, a, b);
+  }
+}
+
+inline void storeSpecials(Level& level, int j, int colour) {
+  for (int s = level.specialBegin[2 * j + colour]; s < level.specialBegin[2 * j + colour + 1]; ++s)
+    level.x[level.specialAt[s]] = level.specialValue[s];
+}
+
+/// A Gauss-Seidel sweep over one colour of row j, but for the special unknowns in it. bandOnly: only the
+/// cells near solids.
+template <bool bandOnly>
+inline void sweepGrid(Level& level, int j, int colour) {
+  const std::vector<int>& begin = bandOnly ? level.bandBegin : level.runBegin;
   float* x = level.row(level.x, j);
   const float* b = level.row(level.b, j);
   const float* ax = level.row(level.ax, j);
@@ -182,6 +249,9 @@ inline void sweepRow(Level& level, int j, int colour) {
   const Level::Run* run = (bandOnly ? level.bandRuns : level.runs).data() + begin[j];
   const Level::Run* end = (bandOnly ? level.bandRuns : level.runs).data() + begin[j + 1];
   const bool middle = sweepsMiddle<bandOnly>(level, j, colour);
+  const std::uint16_t* cells = bandOnly && !level.bandCells.empty()
+                                   ? level.bandCells.data() + static_cast<std::size_t>(j) * level.chunks
+                                   : nullptr;
   const MiddlePair pair = middle ? MiddlePair{x[level.swapsAt - 1], x[level.swapsAt]} : MiddlePair{};
   Lanes left = {};
   for (int done = -1; run != end; ++run) {
@@ -191,6 +261,13 @@ inline void sweepRow(Level& level, int j, int colour) {
     done = run->end;
     if (!bandOnly && run->regular) {
       left = sweepRegularRun(level, x, b, *run, left, j, colour);
+    } else if (bandOnly && cells) {
+      for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
+        const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
+        const Lanes value = relaxedGeneral(x + i, b + i, ax + i, ay + i, id + i, stride, left);
+        left = nextLeft;
+        store(x + i, (lanesOfColour(level, i, j, colour) & lanesOfBits(cells[i / kLanes])) ? value : old);
+      }
     } else {
       for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
         const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
@@ -201,8 +278,18 @@ inline void sweepRow(Level& level, int j, int colour) {
     }
   }
   if (middle) pair.solve(level, j, x);
-  for (int s = first; s < last; ++s) values[level.specialAt[s]] = level.specialValue[s];
-  level.wrapRow(x);
+}
+
+/// The same with the special unknowns: those and the others of their colour see each other's old values.
+template <bool bandOnly>
+inline void sweepRow(Level& level, int j, int colour) {
+  const std::vector<int>& begin = bandOnly ? level.bandBegin : level.runBegin;
+  if (begin[j] == begin[j + 1]) return;  // special unknowns are in the band
+  relaxSpecials(level, j, colour);
+  solveSpecialPairs<false>(level, j, colour);
+  sweepGrid<bandOnly>(level, j, colour);
+  storeSpecials(level, j, colour);
+  level.wrapRow(level.row(level.x, j));
 }
 
 /// The first sweep (red) from the value 0 everywhere: sets the whole row.
@@ -223,7 +310,8 @@ inline void startRow(Level& level, int j) {
   }
   if (sweepsMiddle<false>(level, j, 0)) MiddlePair().solve(level, j, x);
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)
-    level.x[level.specialAt[s]] = level.b[level.specialAt[s]] * level.specialInverse[s];
+    level.x[level.specialAt[s]] =
+        level.b[level.specialAt[s]] * level.specialInverse[s] * level.specialShare[s];
   for (int s = level.specialBegin[2 * j + 1]; s < level.specialBegin[2 * j + 2]; ++s)
     level.x[level.specialAt[s]] = 0;
   level.wrapRow(x);
@@ -242,17 +330,25 @@ class MiddleRows {
     if constexpr (start) {
       startRow(level_, lower_);
       startRow(level_, upper_);
+      solveSpecialPairs<true>(level_, lower_, 0);
+      solveSpecialPairs<true>(level_, upper_, 0);
       std::fill_n(old(0), width(), 0.0f);
       std::fill_n(old(1), width(), 0.0f);
     } else {
       float *below = level_.row(level_.x, lower_) - 1, *above = level_.row(level_.x, upper_) - 1;
       std::copy_n(below, width(), old(0));
       std::copy_n(above, width(), old(1));
-      sweepRow<bandOnly>(level_, lower_, colour);
+      relaxSpecials(level_, lower_, colour);
+      relaxSpecials(level_, upper_, colour);
+      solveSpecialPairs<false>(level_, lower_, colour);
+      solveSpecialPairs<false>(level_, upper_, colour);
+      sweepGrid<bandOnly>(level_, lower_, colour);
       std::copy_n(below, width(), old(2));
       std::copy_n(old(0), width(), below);
-      sweepRow<bandOnly>(level_, upper_, colour);
+      sweepGrid<bandOnly>(level_, upper_, colour);
       std::copy_n(old(2), width(), below);
+      storeSpecials(level_, lower_, colour);
+      storeSpecials(level_, upper_, colour);
     }
     join<bandOnly>(colour);
   }
@@ -275,19 +371,15 @@ class MiddleRows {
       for (int i = first; i < last; ++i) {
         if (level_.colourOf(i, lower_) != colour) continue;
         if (i == level_.swapsAt || i == level_.swapsAt - 1) continue;
-        const float overBelow = link[i] * idBelow[i], overAbove = link[i] * idAbove[i];
-        if (!(overBelow > 0 && overAbove > 0)) continue;
-        const float p = below[i] - overBelow * wasAbove[i], q = above[i] - overAbove * wasBelow[i],
-                    scale = 1 / (1 - overBelow * overAbove);
-        below[i] = (p + overBelow * q) * scale;
-        above[i] = (q + overAbove * p) * scale;
+        if (bandOnly && !(level_.inBand(i, lower_) && level_.inBand(i, upper_))) continue;
+        solvePair(below[i], above[i], link[i] * idBelow[i], link[i] * idAbove[i], wasBelow[i], wasAbove[i]);
       }
     }
     if (level_.swapsAt < level_.nx && level_.colourOf(level_.swapsAt, lower_) == colour) {
-      const int first = (level_.swapsAt - 1) / kLanes, second = level_.swapsAt / kLanes;
-      const std::uint8_t all = kindBelow[first] & kindBelow[second] & kindAbove[first] & kindAbove[second];
-      const std::uint8_t any = kindBelow[first] | kindBelow[second] | kindAbove[first] | kindAbove[second];
-      if (bandOnly ? (all & kBand) != 0 : (any & kEmpty) == 0) solveFour(below, above, wasBelow, wasAbove);
+      bool swept = true;
+      for (int k = 0; k < 4 && bandOnly; ++k)
+        swept &= level_.inBand(level_.swapsAt - (k & 1), k < 2 ? lower_ : upper_);
+      if (swept) solveFour(below, above, wasBelow, wasAbove);
     }
     level_.wrapRow(below);
     level_.wrapRow(above);
@@ -304,6 +396,11 @@ class MiddleRows {
     const float was[4] = {wasBelow[a], wasBelow[b], wasAbove[a], wasAbove[b]};
     const std::ptrdiff_t low = level_.at(a, lower_), high = level_.at(a, upper_);
     const float id[4] = {level_.id[low], level_.id[low + 1], level_.id[high], level_.id[high + 1]};
+    if (id[0] < 0 || id[1] < 0 || id[2] < 0 || id[3] < 0) {  // special ones: half way is safe for the others
+      for (int k = 0; k < 4; ++k)
+        if (id[k] > 0) *cell[k] = 0.5f * (*cell[k] + was[k]);
+      return;
+    }
     const float under = level_.ax[low + 1], over = level_.ax[high + 1], left = level_.ay[high],
                 right = level_.ay[high + 1];
     float change[4], along[4], up[4];  // Jacobi's; the link to the cell beside it, and above or below it
@@ -340,11 +437,40 @@ SMOKEBOX_INLINE Lanes applyChunk(const Level& level, std::uint8_t kind, const fl
            (load(here - level.stride) + load(here + level.stride));
   const float* ax = level.ax.data() + offset;
   const float* ay = level.ay.data() + offset;
-  const Lanes sum = (load(ax) * (v - load(here - 1)) + load(ax + 1) * (v - load(here + 1))) +
-                    (load(ay) * (v - load(here - level.stride)) +
-                     load(ay + level.stride) * (v - load(here + level.stride)));
+  const Lanes left = load(ax), right = load(ax + 1), below = load(ay), above = load(ay + level.stride);
+  Lanes sum = (left * (v - load(here - 1)) + right * (v - load(here + 1))) +
+              (below * (v - load(here - level.stride)) + above * (v - load(here + level.stride)));
+  if (level.tellsWhole) {
+    const LaneMask whole = ((left == 1.0f) & (right == 1.0f)) & ((below == 1.0f) & (above == 1.0f));
+    sum = whole ? (4.0f * v - (load(here - 1) + load(here + 1))) -
+                      (load(here - level.stride) + load(here + level.stride))
+                : sum;
+  }
   const Lanes zero = {};
   return load(level.id.data() + offset) > 0.0f ? sum : zero;
+}
+
+/// The same for a special unknown, in the same order.
+inline float applySpecial(const Level& level, int s) {
+  const float* values = level.x.data();
+  const float v = values[level.specialAt[s]];
+  if (level.starred[s]) {
+    const Level::Star& star = level.star[s];
+    if (level.starred[s] == Level::kWholeStar)
+      return (4.0f * v - (values[star.to[0]] + values[star.to[2]])) -
+             (values[star.to[4]] + values[star.to[6]]);
+    const auto side = [&](int k) __attribute__((always_inline)) {
+      return star.weight[k] * (v - values[star.to[k]]) + star.weight[k + 1] * (v - values[star.to[k + 1]]);
+    };
+    return (side(0) + side(2)) + (side(4) + side(6));
+  }
+  double side[4] = {};
+  for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e) {
+    const Level::Entry& entry = level.entries[e];
+    side[static_cast<int>(entry.towards)] += static_cast<double>(entry.weight * (v - values[entry.to]));
+  }
+  return (static_cast<float>(side[0]) + static_cast<float>(side[1])) +
+         (static_cast<float>(side[2]) + static_cast<float>(side[3]));
 }
 
 /// b - A x of row j into its residual row.
@@ -361,9 +487,7 @@ inline void residualOfRow(Level& level, int j) {
   }
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 2]; ++s) {
     const int at = level.specialAt[s];
-    float sum = level.b[at];
-    for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e)
-      sum -= level.entries[e].weight * (level.x[at] - level.x[level.entries[e].to]);
+    const float sum = level.b[at] - applySpecial(level, s);
     if (at >= level.extrasBegin)
       level.residualExtra[at - level.extrasBegin] = sum;
     else
@@ -371,43 +495,82 @@ inline void residualOfRow(Level& level, int j) {
   }
 }
 
-/// Adds up the residual rows 2 J and 2 J + 1 into row J of the coarse right-hand side.
-inline void restrictRow(Level& fine, Level& coarse, int J, const float* zeroRow) {
-  const float* lower = fine.residualRow(2 * J);
-  const float* upper = 2 * J + 1 < fine.ny ? fine.residualRow(2 * J + 1) : zeroRow;
-  float* b = coarse.row(coarse.b, J);
+/// Lanes of the coarse blocks I to I + 15 beyond the middle one.
+SMOKEBOX_INLINE LaneMask lanesBeyond(const Joining& join, int I) {
+  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return place > join.middle - I;
+}
+
+/// Joins the columns of the coarse blocks I to I + 15: their sums, or each block's first. at(i): what the
+/// fine columns i to i + 15 hold.
+template <bool first, class At>
+SMOKEBOX_INLINE Lanes joinColumns(const Joining& join, int I, At&& at) {
   const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
   const LaneMask odd = even + 1;
-  for (int c = 0, i = 0; c < coarse.chunks; ++c, i += kLanes) {
-    const Lanes p = load(lower + 2 * i) + load(upper + 2 * i);
-    const Lanes q = load(lower + 2 * i + kLanes) + load(upper + 2 * i + kLanes);
-    store(b + i, __builtin_shuffle(p, q, even) + __builtin_shuffle(p, q, odd));
+  const auto pairs = [&](int i) __attribute__((always_inline)) {
+    const Lanes p = at(i), q = at(i + kLanes);
+    const Lanes one = __builtin_shuffle(p, q, even);
+    return first ? one : one + __builtin_shuffle(p, q, odd);
+  };
+  if (I + kLanes <= join.middle) return pairs(2 * I);
+  if (I > join.middle) return pairs(2 * I + join.shift);
+  Lanes sum = lanesBeyond(join, I) ? pairs(2 * I + join.shift) : pairs(2 * I);
+  const Lanes middle = at(2 * join.middle);
+  sum[join.middle - I] = first || join.shift < 0 ? middle[0] : (middle[0] + middle[2]) + middle[1];
+  return sum;
+}
+
+/// Adds up the residual rows of row J of the coarse right-hand side.
+inline void restrictRow(Level& fine, Level& coarse, int J, const float* zeroRow) {
+  const int j = fine.joinY.begin(J), count = fine.joinY.begin(J + 1) - j;
+  const float* rows[3] = {fine.residualRow(j), count > 1 ? fine.residualRow(j + 1) : zeroRow,
+                          count > 2 ? fine.residualRow(j + 2) : zeroRow};
+  float* b = coarse.row(coarse.b, J);
+  for (int c = 0; c < coarse.chunks; ++c) {
+    const int I = c * kLanes;
+    if (count < 3)
+      store(b + I, joinColumns<false>(
+                       fine.joinX, I, [&](int i) __attribute__((always_inline)) {
+                         return load(rows[0] + i) + load(rows[1] + i);
+                       }));
+    else
+      store(b + I, joinColumns<false>(
+                       fine.joinX, I, [&](int i) __attribute__((always_inline)) {
+                         return (load(rows[0] + i) + load(rows[2] + i)) + load(rows[1] + i);
+                       }));
   }
   for (int s = fine.splitBegin[J]; s < fine.splitBegin[J + 1]; ++s) {
     const Level::Split& split = fine.split[s];
-    float sum = 0;
+    double sum = 0;  // of so few that their order hardly ever matters
     for (int k = split.childBegin; k < split.childEnd; ++k) {
       const int child = fine.child[k];
-      sum += child < 0 ? fine.residualExtra[~child] : ((child & 1) ? upper : lower)[child >> 1];
+      sum += static_cast<double>(child < 0 ? fine.residualExtra[~child] : rows[child & 3][child >> 2]);
     }
-    coarse.b[split.at] = sum;
+    coarse.b[split.at] = static_cast<float>(sum);
   }
 }
 
 /// Adds the coarse correction to row j.
 inline void prolongRow(Level& fine, const Level& coarse, int j) {
   float* x = fine.row(fine.x, j);
-  const float* correction = coarse.row(coarse.x, j / 2);
+  const float* correction = coarse.row(coarse.x, fine.joinY.coarse(j));
   const int first = fine.prolongBegin[j], last = fine.prolongBegin[j + 1];
   for (int s = first; s < last; ++s) {
     Level::Prolong& p = fine.prolong[s];
     p.value = fine.x[p.at] + coarse.x[p.parent];
   }
   const std::uint8_t* kind = fine.chunkRow(j);
-  const LaneMask twice = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7};
+  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Joining join = fine.joinX;
   for (int c = 0, i = 0; c < fine.chunks; ++c, i += kLanes) {
     if (kind[c] & kEmpty) continue;
-    store(x + i, load(x + i) + __builtin_shuffle(load(correction + i / 2), twice));
+    Lanes value = __builtin_shuffle(load(correction + i / 2), place >> 1);
+    if (i + kLanes > join.from) {
+      const Lanes beyond =
+          __builtin_shuffle(load(correction + i / 2 - (join.shift > 0 ? 1 : 0)), (place + 1) >> 1);
+      value = place >= join.from - i ? beyond : value;
+    }
+    store(x + i, load(x + i) + value);
   }
   for (int s = first; s < last; ++s) fine.x[fine.prolong[s].at] = fine.prolong[s].value;
   fine.wrapRow(x);

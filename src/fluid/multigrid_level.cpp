@@ -42,21 +42,27 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
   const std::size_t cells = static_cast<std::size_t>(nx) * ny;
   part.assign(cells, 0);
   specialBegin.assign(2 * ny + 1, 0);
+  specialPairBegin.assign(2 * ny + 1, 0);
   prolongBegin.assign(ny + 1, 0);
 
   middle.assign(3 * (nx + 2 + kLanes), 0);
-  residualRows = wholeResidual ? ny : std::min(ny, 2);
+  joinX = Joining(nx);
+  joinY = Joining(ny);
+  residualRows = wholeResidual ? ny : std::min(ny, ny % 2 == 0 ? 2 : 3);
   residualStride = (chunks + 1) / 2 * 2 * kLanes;
-  residual.assign(residualRows * residualStride, 0);
+  residual.assign(residualRows * residualStride + 2 * kLanes,
+                  0);  // rows are read from a cell before, or after
+  bandCells.assign(nx % kLanes == 0 || nx < kLanes ? 0 : chunk.size(), 0);
 }
 
 std::size_t Level::bytes() const {
   return bytesOf(x) + bytesOf(b) + bytesOf(ax) + bytesOf(ay) + bytesOf(id) + bytesOf(chunk) + bytesOf(runs) +
          bytesOf(bandRuns) + bytesOf(extraBase) + bytesOf(extraCell) + bytesOf(specialBegin) +
          bytesOf(specialAt) + bytesOf(specialCell) + bytesOf(specialInverse) + bytesOf(specialValue) +
-         bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) + bytesOf(prolongBegin) + bytesOf(prolong) +
-         bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) + bytesOf(residual) + bytesOf(residualExtra) +
-         bytesOf(onceX) + bytesOf(onceB) + bytesOf(middle);
+         bytesOf(specialShare) + bytesOf(specialPairs) + bytesOf(specialPairBegin) + bytesOf(star) +
+         bytesOf(starred) + bytesOf(bandCells) + bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) +
+         bytesOf(prolongBegin) + bytesOf(prolong) + bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) +
+         bytesOf(residual) + bytesOf(residualExtra) + bytesOf(onceX) + bytesOf(onceB) + bytesOf(middle);
 }
 
 }  // namespace smokebox::multigrid

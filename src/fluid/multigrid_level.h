@@ -48,14 +48,39 @@ enum Chunk : std::uint8_t {
 /// From which of its four sides a link leaves a block.
 enum class Towards : std::uint8_t { left, right, down, up };
 
+/// How the blocks along one direction are joined to those of the next coarser level: two by two, and around
+/// the middle of an odd number, one by itself or three, so that an odd number of blocks lies about the same
+/// middle again, down to one. What is mirrored about the middle so stays mirrored.
+struct Joining {
+  static constexpr int kNone = 1 << 30;
+  int middle = kNone;  // the coarse block that has one or three
+  int from = kNone;    // the fine blocks that the shift is for
+  int shift = 0;       // of the blocks beyond: -1 after one, +1 after three
+
+  Joining() = default;
+  explicit Joining(int blocks) {
+    if (blocks % 2 == 0) return;
+    shift = blocks % 4 == 1 ? -1 : 1;
+    middle = (blocks - 1) / 4;
+    from = 2 * middle + (shift < 0 ? 1 : 2);
+  }
+  static int joined(int blocks) { return Joining(blocks).coarse(blocks); }
+
+  /// The coarse block that a fine one belongs to.
+  int coarse(int i) const { return (i - (i >= from ? shift : 0)) / 2; }
+  /// The first fine block of a coarse one, or past the last.
+  int begin(int I) const { return 2 * I + (I > middle ? shift : 0); }
+};
+
 struct Level {
   // ---- shape
   int nx = 0, ny = 0;
   bool periodicX = false, periodicY = false;
-  int chunks = 0;  // in a row
+  int chunks = 0;        // in a row
+  Joining joinX, joinY;  // to the next coarser level
   // The colours are mirrored about the middle of an even number of columns and about that of an even number
-  // of rows, so that a mirrored problem has the mirrored solution: from this column on, and from this row on;
-  // or from beyond the last.
+  // of rows (of an odd number they are so by themselves), so that a mirrored problem has the mirrored
+  // solution: from this column on, and from this row on; or from beyond the last.
   int swapsAt = 0, swapsAtRow = 0;
   double unit = 1;                        // edge of a whole block, in cells of the finest grid
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
@@ -79,6 +104,12 @@ struct Level {
   std::vector<int> runBegin, bandBegin;  // ny + 1
   std::vector<Run> runs;                 // chunks of one kind side by side, without the empty ones
   std::vector<Run> bandRuns;             // chunks of the band side by side
+  // Chunks are no mirror images of each other unless they are all full: else the cells of the band in each, a
+  // bit for each cell, so that those are. ny x chunks, or empty: all cells of its chunks.
+  std::vector<std::uint16_t> bandCells;
+  // Cells whose links are all 1 are done as in regular chunks wherever they are: their mirror images may be
+  // in such a chunk, or special ones.
+  bool tellsWhole = false;
 
   std::vector<int>
       extraBase;  // per block (offset without margins): first extra unknown in it, -1 if it is whole
@@ -89,6 +120,15 @@ struct Level {
   std::vector<int> specialAt;     // offset into x
   std::vector<int> specialCell;   // j nx + i
   std::vector<float> specialInverse, specialValue;
+  std::vector<float>
+      specialShare;  // of a change that is made: less than 1 if one of the same colour is linked
+  struct Star {  // its links, if there are no more than two to each side: to itself and 0 where there is none
+    int to[8];
+    float weight[8];
+  };
+  std::vector<Star> star;
+  static constexpr std::uint8_t kNoStar = 0, kStar = 1, kWholeStar = 2;  // all four links are exactly 1
+  std::vector<std::uint8_t> starred;
   std::vector<int> entryBegin;  // per special unknown, + 1
   struct Entry {
     int to;  // offset into x
@@ -97,6 +137,15 @@ struct Level {
     bool listed;  // false: also kept in ax or ay
   };
   std::vector<Entry> entries;
+
+  // Two of one colour, in the middle, that are linked to each other and to no other one of that colour:
+  // solved as one.
+  struct SpecialPair {
+    int a, b;  // special unknowns
+    float overA, overB;
+  };
+  std::vector<SpecialPair> specialPairs;
+  std::vector<int> specialPairBegin;  // 2 ny + 1: by the row and colour of the first of each
 
   // ---- to the next coarser level
   std::vector<std::uint16_t>
@@ -113,12 +162,12 @@ struct Level {
     int childBegin, childEnd;
   };
   std::vector<Split> split;
-  std::vector<int> child;  // 2 i + (j & 1) of a primary unknown, ~k of the extra unknown k
+  std::vector<int> child;  // 4 i + row within the block of a primary unknown, ~k of the extra unknown k
 
-  Floats onceX, onceB;  // put by between the first and the second visit of a W-cycle
+  Floats onceX, onceB;        // put by between the first and the second visit of a W-cycle
   std::vector<float> middle;  // scratch: what the two middle rows held before a sweep
 
-  // ---- residual: whole rows; two of them are enough where the sweeps are fused
+  // ---- residual: whole rows; as many as a coarse row has are enough where the sweeps are fused
   Floats residual;
   std::vector<float> residualExtra;
   std::ptrdiff_t residualStride = 0;
@@ -127,7 +176,7 @@ struct Level {
   std::ptrdiff_t at(int i, int j) const { return origin + j * stride + i; }
   float* row(Floats& f, int j) const { return f.data() + at(0, j); }
   const float* row(const Floats& f, int j) const { return f.data() + at(0, j); }
-  float* residualRow(int j) { return residual.data() + (j % residualRows) * residualStride; }
+  float* residualRow(int j) { return residual.data() + kLanes + (j % residualRows) * residualStride; }
   const std::uint8_t* chunkRow(int j) const { return chunk.data() + static_cast<std::size_t>(j) * chunks; }
   std::uint8_t* chunkRow(int j) { return chunk.data() + static_cast<std::size_t>(j) * chunks; }
 
@@ -145,6 +194,12 @@ struct Level {
   /// The two rows in the middle of mirrored colours: cells above each other have one colour there.
   bool inMiddleRows(int j) const { return j == swapsAtRow || j == swapsAtRow - 1; }
   bool hasMiddleRows() const { return swapsAtRow < ny; }
+  /// Is the cell swept with the band along solids?
+  bool inBand(int i, int j) const {
+    if (!bandCells.empty())
+      return (bandCells[static_cast<std::size_t>(j) * chunks + i / kLanes] >> (i % kLanes)) & 1;
+    return chunkRow(j)[i / kLanes] & kBand;
+  }
 
   /// Sizes everything that depends on the grid alone. `wholeResidual`: keep all its rows.
   void shape(int nx, int ny, bool periodicX, bool periodicY, bool wholeResidual);

@@ -202,7 +202,6 @@ void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
     const CutLink& link = links[k];
     if (link.i >= s.columns || link.j >= s.rows || !(open(link.i, link.j) > 0)) continue;
     s.linkWeight[k] = linkWeightOf(link);
-    s.wallWeight(link.i, link.j) += s.linkWeight[k];
     int i = link.di < 0 ? link.i - 1 : link.i, j = link.dj < 0 ? link.j - 1 : link.j;
     if (i < 0) i += wrapX ? s.columns : 0;
     if (j < 0) j += wrapY ? s.rows : 0;
@@ -216,9 +215,14 @@ void Viscosity::Impl::rebuild(const Boundary& boundary, System& s) {
     if (j < 0) j += wrapY ? s.rows : 0;
     if ((link.di != 0 ? s.toRight : s.toAbove)(i, j) == 0) continue;
     s.bent.push_back(static_cast<int>(k));
-    const float more = bendOf(link) * s.linkWeight[k];
-    s.linkWeight[k] += more;
-    s.wallWeight(link.i, link.j) += more;
+    s.linkWeight[k] += bendOf(link) * s.linkWeight[k];
+  }
+  for (std::size_t k = 0; k < links.size();) {
+    const int i = links[k].i, j = links[k].j;
+    double sum = 0;  // of any order, see addWalls()
+    for (; k < links.size() && links[k].i == i && links[k].j == j; ++k)
+      sum += static_cast<double>(s.linkWeight[k]);
+    if (sum > 0) s.wallWeight(i, j) = static_cast<float>(sum);
   }
   s.bend.assign(s.bent.size(), 0.0f);
   wrap(s, s.toRight);
@@ -261,13 +265,21 @@ void Viscosity::Impl::findRegular(System& s) {
 float Viscosity::Impl::addWalls(const Boundary& boundary, const System& s, float c, Field& right) const {
   const auto& links = s.alongX ? boundary.linksU : boundary.linksV;
   float largest = 0;
-  for (std::size_t k = 0; k < links.size(); ++k) {
-    if (s.linkWeight[k] == 0) continue;
-    right(links[k].i, links[k].j) += c * s.linkWeight[k] * links[k].velocity;
-    largest = std::max(largest, std::fabs(links[k].velocity));
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < links.size();) {
+    const int i = links[k].i, j = links[k].j;
+    bool any = false;
+    double sum =
+        0;  // in float64, where the order of a face's links, which is not the mirror image's, is all one
+    for (; k < links.size() && links[k].i == i && links[k].j == j; ++k) {
+      if (s.linkWeight[k] == 0) continue;
+      any = true;
+      sum += static_cast<double>(c * s.linkWeight[k] * links[k].velocity);
+      if (n < s.bent.size() && s.bent[n] == static_cast<int>(k)) sum += static_cast<double>(c * s.bend[n++]);
+      largest = std::max(largest, std::fabs(links[k].velocity));
+    }
+    if (any) right(i, j) = static_cast<float>(static_cast<double>(right(i, j)) + sum);
   }
-  for (std::size_t n = 0; n < s.bent.size(); ++n)
-    right(links[s.bent[n]].i, links[s.bent[n]].j) += c * s.bend[n];
   return largest;
 }
 
@@ -502,7 +514,10 @@ void applySurfaceDrag(const Boundary& boundary, Field& u, Field& v) {
       float share = 0, wall = 0;
       for (; k < links.size() && links[k].i == i && links[k].j == j; ++k) {
         const float s = std::clamp(links[k].drag, 0.0f, 1.0f) * (1 - std::clamp(links[k].theta, 0.0f, 1.0f));
-        if (s > share) share = s, wall = links[k].velocity;
+        if (s > share)
+          share = s, wall = links[k].velocity;
+        else if (s == share)
+          wall = 0.5f * (wall + links[k].velocity);  // mirror images have them in another order
       }
       if (open(i, j) > 0) f(i, j) += share * (wall - f(i, j));
     }

@@ -68,7 +68,7 @@ Study mirror(bool upright) {
   return {upright ? "mirror-left-right" : "mirror-up-down",
           "how unlike its mirror image a symmetric flow gets in 200 steps; size: cells across the axis",
           "exact",
-          {64, 128},
+          {64, 96, 100, 128},
           [upright](int size) { return sceneOf(upright, size); },
           [upright](const SceneDocument& scene, int threads) { return measure(upright, scene, threads); }};
 }
