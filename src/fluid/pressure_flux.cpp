@@ -133,7 +133,9 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
             (sideFlux(ay + i, vr + i, wallV + i) - sideFlux(ayAbove + i, va + i, wallVAbove + i));
         *reinterpret_cast<HalfChunk*>(sums + k) = __builtin_convertvector(sum, HalfChunk);
       }
-      net = whole ? net : load(sums);
+      // Cell by cell only where the chunks of mirror images are no mirror images.
+      const Lanes exact = load(sums);
+      net = nx % kLanes == 0 ? exact : whole ? net : exact;
     }
     if (!regular) {
       net = load(id + first) > zero ? net : zero;
