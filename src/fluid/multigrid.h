@@ -14,8 +14,8 @@
 // A problem that is mirrored left to right (or up to down) has the mirrored solution to the bit, for any
 // number of columns and rows: colours and the joining of blocks are mirrored about the middle (see Level),
 // every unknown is a sum of what lies along x and of what lies along y whichever way it is stored, and so is
-// what a sweep along solids covers. Not so across periodic sides, left to right for those on the left and
-// right.
+// what a sweep along solids covers. Not so where an even number of blocks is split beside the middle, nor
+// across periodic sides, left to right for those on the left and right.
 //
 // All sweeps of a level run in one pass over its rows, each row as soon as its neighbours are ready; several
 // threads do so in bands of rows, each sweep a row further from the border than the last, and then what is

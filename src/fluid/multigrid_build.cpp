@@ -48,7 +48,14 @@ void Builder::coarsen(Level& fine, Level& coarse) {
 // In the middle of mirrored colours two columns, or two rows, have one colour; a sweep solves each such pair
 // as one.
 void Builder::chooseColours(Level& level) {
-  const bool mirrorX = level.nx % 2 == 0 && !level.periodicX, mirrorY = level.ny % 2 == 0 && !level.periodicY;
+  bool mirrorX = level.nx % 2 == 0 && !level.periodicX, mirrorY = level.ny % 2 == 0 && !level.periodicY;
+  // Not where blocks are split there: the colours then go on as everywhere, and mirror images differ by
+  // rounding.
+  for (int cell : level.extraCell) {
+    const int fromX = 2 * (cell % level.nx) + 1 - level.nx, fromY = 2 * (cell / level.nx) + 1 - level.ny;
+    mirrorX &= fromX < -3 || fromX > 3;
+    mirrorY &= fromY < -3 || fromY > 3;
+  }
   level.tellsWhole = !level.bandCells.empty() || level.extras > 0;
   level.swapsAt = mirrorX ? level.nx / 2 : level.chunks * kLanes + kLanes;
   level.swapsAtRow = mirrorY ? level.ny / 2 : level.ny + 1;
