@@ -191,18 +191,18 @@ void ContactBlocks::warmStart(Bodies& bodies) const {
   }
 }
 
-double ContactBlocks::solve(Bodies& bodies, double h, bool first) {
+double ContactBlocks::solve(Bodies& bodies, double h, bool first, double above) {
   Motion* velocity = bodies.velocity.data();
   const Motion* moved = bodies.moved.data();
   const Lanes rate = Lanes{} + 1 / h;
-  Lanes largest{};
+  double result = 0;
   for (Block& block : blocks_) {
-    if (!first && block.spare > kSpare * change_) continue;
+    if (!first && (block.spare > kSpare * change_ || block.change < above)) continue;
     Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
     const Motions da = gather(moved, block.a), db = gather(moved, block.b);
     const Lanes nx = block.nx, ny = block.ny;
     const Lanes apart = nx * (db.x - da.x) + ny * (db.y - da.y);
-    Lanes deepest{}, least = Lanes{} + 1e300;
+    Lanes deepest{}, largest{}, least = Lanes{} + 1e300;
     for (int k = 0; k < block.count; ++k) {
       Point& p = block.points[k];
       if (first) block.total += p.impulseN;  // what the last sub-step came to
@@ -239,11 +239,13 @@ double ContactBlocks::solve(Bodies& bodies, double h, bool first) {
     }
     if (first) block.deepest = smallestOf(deepest);
     block.spare = smallestOf(least);
+    block.change = largestOf(largest);
+    result = std::max(result, block.change);
     scatter(velocity, block.a, block.storeA, va);
     scatter(velocity, block.b, block.storeB, vb);
   }
-  change_ = largestOf(largest);
-  return change_;
+  change_ = result;
+  return result;
 }
 
 void ContactBlocks::separate(Bodies& bodies, double slop, double share, double most) const {

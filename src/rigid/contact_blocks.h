@@ -26,9 +26,9 @@ class ContactBlocks {
 
   /// Adds the impulses to the velocities.
   void warmStart(Bodies& bodies) const;
-  /// One sweep (the first of a sub-step or a further one). Gives the largest change of a relative velocity,
-  /// m/s.
-  double solve(Bodies& bodies, double h, bool first);
+  /// One sweep (the first of a sub-step or a further one) over the blocks that the last one changed by
+  /// `above` or more. Gives the largest change of a relative velocity, m/s.
+  double solve(Bodies& bodies, double h, bool first, double above = 0);
   /// Moves bodies apart that overlapped by more than `slop` in the last first sweep: a share of the overlap,
   /// at most `most` metres.
   void separate(Bodies& bodies, double slop, double share, double most) const;
@@ -63,6 +63,7 @@ class ContactBlocks {
     int contact[kLanes];          // -1: empty lane
     std::uint8_t storeA, storeB;  // bits: the lane's body moves
     int count;                    // points of its contacts: 1 or 2
+    double change;                // of a relative velocity in the last sweep, m/s
     double deepest;               // smallest gap in the last first sweep
     double spare;  // all parted faster than they need by so much in the last sweep, m/s; 0: none
     Lanes nx, ny, friction;

@@ -32,6 +32,7 @@ struct RigidSystem::State {
   /// Lets the bodies of a joint pass through each other, or no longer.
   void setJoined(const JointDef& joint, bool on);
   double sweep(double h, bool first);
+  void sweepRough(double h, double change);
   void findCalmShare();
   void yieldTorn();
   void findWays(double h, bool withStruck);
@@ -92,6 +93,7 @@ struct RigidSystem::State {
   RigidTotals contactTotals;  // contacts and overlap of the last step
   std::vector<int> gone;
   double dt = 0, timeLeft = 0;
+  double typicalWidth = 0;  // mean of the moving bodies' smallest widths, m
 };
 
 }  // namespace smokebox

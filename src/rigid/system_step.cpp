@@ -22,6 +22,10 @@ constexpr double kSettled = 1e-3;
 constexpr double kSettledShare = 1e-2;
 // So many sweeps are made before the further ones are drawn along a conjugate direction.
 constexpr int kPlainSweeps = 3;
+// Beyond these sweeps there are so many more over those places alone where velocities change by this share of
+// the bodies' width in a sub-step; a place: by this share of that.
+constexpr int kRoughSweeps = 4;
+constexpr double kRough = 3e-3, kRoughPlace = 0.25;
 // Both are this much less for a few points.
 constexpr double kSettledFew = 1e-8;
 constexpr long kFewPoints = 160;
@@ -139,7 +143,15 @@ void RigidSystem::State::beginStep(double step) {
   spare.clear();
   for (const int k : uncoloured) spare.push_back(narrow.calm()[k]);
   mayBounce = false;
-  for (int b = 0; b < bodies.count(); ++b) mayBounce |= bodies.there[b] && bodies.def[b].bounce > 0;
+  int moving = 0;
+  typicalWidth = 0;
+  for (int b = 0; b < bodies.count(); ++b) {
+    mayBounce |= bodies.there[b] && bodies.def[b].bounce > 0;
+    if (!bodies.moves(b)) continue;
+    ++moving;
+    typicalWidth += bodies.extent[b].thinnest;
+  }
+  typicalWidth /= std::max(moving, 1);
   bouncing.clear();
   for (std::size_t k = 0; k < narrow.calm().size(); ++k)
     if (narrow.calm()[k].bounce > 0) bouncing.push_back(static_cast<int>(k));
@@ -305,6 +317,17 @@ double RigidSystem::State::sweep(double h, bool first) {
   return change;
 }
 
+// Where heaps land there is no time for sweeps until all is settled, but none may sink into another: those
+// places are gone over some more times.
+void RigidSystem::State::sweepRough(double h, double change) {
+  const double rough = kRough * typicalWidth / h;
+  for (int more = 0; more < kRoughSweeps && change > rough; ++more) {
+    change = blocks.solve(bodies, h, false, kRoughPlace * rough);
+    change = std::max(change, solve(bodies, spare));
+    change = std::max(change, solve(bodies, narrow.lively()));
+  }
+}
+
 void RigidSystem::State::solveContacts(double h) {
   warmStartAll(h);
   auto points = [&] {
@@ -330,7 +353,10 @@ void RigidSystem::State::solveContacts(double h) {
         settled =
             std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
       if (change <= settled) break;
-      if (left < cost && (sweeps > 1 || work > kTwoSweeps)) break;
+      if (left < cost && (sweeps > 1 || work > kTwoSweeps)) {
+        sweepRough(h, change);
+        break;
+      }
       if (accelerates && sweeps >= kPlainSweeps)
         conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
     }
