@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rigid/collide.h"
 #include "rigid/contact_sweeps.h"
-#include "rigid/distance.h"
 
 namespace smokebox {
 
@@ -26,9 +24,6 @@ constexpr double kReuseTurn = 1e-5;
 constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 // A lively pair that is this many sub-steps apart is left alone for as long.
 constexpr double kAhead = 4;
-// What overlaps by more than this share of the thinner one's width, and goes on closing in faster than that
-// (m/s) against all impulses, is crushed.
-constexpr double kCrushed = 0.03, kCrushSpeed = 0.2;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
@@ -38,150 +33,7 @@ bool isMoving(const Bodies& bodies, int body) {
   return v.x != 0 || v.y != 0 || v.turn != 0;
 }
 
-/// Distance of the point from the box around a body's pieces.
-double distanceFrom(const Extent& box, const Frame& frame, Vec2 point) {
-  const Vec2 p = toLocal(frame, point) - box.centre;
-  const Vec2 out{std::max(std::abs(p.x) - box.half.x, 0.0), std::max(std::abs(p.y) - box.half.y, 0.0)};
-  return length(out);
-}
-
-/// A bound from below, cheap, on how far two bodies are apart: by the circles around them, then by the box of
-/// one and the circle of the other. `enough`: what needs no better one.
-double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough) {
-  const Extent &a = bodies.extent[key.a], &b = bodies.extent[key.b];
-  const Vec2 pa = bodies.positionNow(key.a), pb = bodies.positionNow(key.b) + shift;
-  const double circles = length(pb - pa) - a.reach - b.reach;
-  if (circles > enough) return circles;
-  const double boxA = a.radius > 0 ? circles : distanceFrom(a, bodies.frameNow(key.a), pb) - b.reach;
-  if (boxA > enough || b.radius > 0) return std::max(circles, boxA);
-  Frame fb = bodies.frameNow(key.b);
-  fb.position = pb;
-  return std::max({circles, boxA, distanceFrom(b, fb, pa) - a.reach});
-}
-
-/// Largest speed of any point of one against any of the other.
-double relativeSpeed(const Bodies& bodies, int a, int b) {
-  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
-  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach +
-         std::abs(vb.turn) * bodies.extent[b].turningReach;
-}
-
-double thinner(const Bodies& bodies, int a, int b) {
-  return std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
-}
-/// Moves a contact along with its bodies, which have moved a little since it was found: the normal turns with
-/// the one whose edge it stands on, the points go with the other one's corners.
-void bringUpToDate(const Bodies& bodies, Contact& contact) {
-  for (int k = 0; k < contact.count; ++k)
-    contact.points[k].gap += gapMoved(bodies, contact, contact.points[k]);
-  const int edges = contact.face == 1 ? contact.a : contact.b;
-  const Motion &da = bodies.moved[contact.a], &db = bodies.moved[contact.b];
-  if (contact.face == 0) return;
-  const Turn by = turnedBy({}, bodies.moved[edges].turn);
-  contact.normal = rotate(by, contact.normal);
-  const Turn corners = turnedBy({}, contact.face == 1 ? db.turn : da.turn);
-  const Vec2 apart = bodies.positionNow(contact.b) + contact.shift - bodies.positionNow(contact.a);
-  for (int k = 0; k < contact.count; ++k) {
-    ContactPoint& p = contact.points[k];
-    if (contact.face == 1) {
-      p.armB = rotate(corners, p.armB);
-      p.armA = p.armB + apart;
-    } else {
-      p.armA = rotate(corners, p.armA);
-      p.armB = p.armA - apart;
-    }
-  }
-}
 }  // namespace
-
-double NarrowPhase::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
-                         bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
-                         const Later& later) {
-  const BodyDef &a = bodies.def[key.a], &b = bodies.def[key.b];
-  auto ahead = [&](int body, const Motion& struck) -> Motion {
-    const Motion& v = bodies.velocity[body];
-    return {struck.x + later.time * v.x, struck.y + later.time * v.y, struck.turn + later.time * v.turn};
-  };
-  const Motion aheadA = ahead(key.a, later.struckA), aheadB = ahead(key.b, later.struckB);
-  Frame fa = bodies.frameNow(key.a), fb = bodies.frameNow(key.b);
-  if (later.time > 0) {
-    fa = {fa.position + aheadA.linear(), turnedBy(fa.turn, aheadA.turn)};
-    fb = {fb.position + aheadB.linear(), turnedBy(fb.turn, aheadB.turn)};
-  }
-  fb.position = fb.position + shift;
-  const double rest = h - later.time;
-  const bool onePair = findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
-  double clear = onePair ? 1e300 : margin;
-  Manifold manifold;
-  for (const PiecePair& pieces : pieces_) {
-    const ConvexPiece &pa = a.shape->pieces[pieces.a], &pb = b.shape->pieces[pieces.b];
-    const Vec2 apart = toWorld(fb, pb.centre) - toWorld(fa, pa.centre);
-    const double near = pa.reach + pb.reach + margin;
-    if (dot(apart, apart) > near * near) {
-      clear = std::min(clear, length(apart) - pa.reach - pb.reach);
-      continue;
-    }
-    double share = 0;
-    Frame ta = fa, tb = fb;
-    if (swept) {
-      const double target = kSweptTarget * thinner(bodies, key.a, key.b);
-      if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
-        const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
-        const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
-        const auto hit = timeOfImpact(pa, sa, pb, sb, target);
-        clear = 0;
-        if (!hit) continue;
-        share = *hit;
-        ta = frameAt(sa, share);
-        tb = frameAt(sb, share);
-        if (!collide(pa, ta, pb, tb, 4 * target, manifold)) continue;
-      }
-    } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
-      clear = std::min(clear, manifold.apart);
-      continue;
-    }
-    clear = 0;
-    Contact contact;
-    contact.a = key.a;
-    contact.b = key.b;
-    contact.pieceA = pieces.a;
-    contact.pieceB = pieces.b;
-    contact.normal = manifold.normal;
-    contact.shift = shift;
-    contact.count = manifold.count;
-    contact.face = manifold.face;
-    contact.friction = std::sqrt(a.friction * b.friction);
-    contact.bounce = std::max(a.bounce, b.bounce);
-    for (int k = 0; k < manifold.count; ++k) {
-      ContactPoint& p = contact.points[k];
-      p.armA = manifold.points[k].point - ta.position;
-      p.armB = manifold.points[k].point - tb.position;
-      p.feature = manifold.points[k].feature;
-      const double speed = partingSpeed(bodies, contact, p);
-      contact.approach = std::max(contact.approach, -speed);
-      // As of the step's start, by the same straight-line rule that brings it up to date.
-      p.gap = manifold.points[k].gap - share * rest * speed - gapMoved(bodies, contact, p) -
-              dot(contact.normal, aheadB.linear() - aheadA.linear()) -
-              aheadB.turn * cross(p.armB, contact.normal) + aheadA.turn * cross(p.armA, contact.normal);
-      p.armA = p.armA + later.time * bodies.velocity[key.a].linear();
-      p.armB = p.armB + later.time * bodies.velocity[key.b].linear();
-    }
-    setMasses(bodies, contact);
-    for (int o = 0; o < oldCount; ++o) {
-      const Contact& before = old[o];
-      if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
-      contact.approach = std::max(contact.approach, before.approach);
-      for (int k = 0; k < contact.count; ++k)
-        for (int l = 0; l < before.count; ++l)
-          if (before.points[l].feature == contact.points[k].feature) {
-            contact.points[k].impulseN = before.points[l].impulseN;
-            contact.points[k].impulseT = before.points[l].impulseT;
-          }
-    }
-    found.push_back(contact);
-  }
-  return clear;
-}
 
 void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
   const int count = bodies.count();
@@ -244,8 +96,8 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     pair.angleB = bodies.angleRad[b];
     double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
     if (clear <= pair.margin)
-      clear = find(bodies, pair.key, shift, pair.margin, h_, false, memory_.data() + pair.first, pair.count,
-                   calm_, {});
+      clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, memory_.data() + pair.first,
+                           pair.count, calm_, {});
     pair.apart = clear >= pair.margin;
     pair.margin = std::max(pair.margin, clear);
   }
@@ -293,8 +145,8 @@ void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double 
       const Vec2 shift = broad.shiftOf(pair.key);
       double clear = clearance(bodies, pair.key, shift, kAhead * near);
       if (clear <= near)
-        clear = find(bodies, pair.key, shift, near, h, pair.swept, lively_.data() + pair.first, pair.count,
-                     next_, {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
+        clear = finder_.find(bodies, pair.key, shift, near, h, pair.swept, lively_.data() + pair.first,
+                             pair.count, next_, {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
       pair.clear = static_cast<int>(next_.size()) > first && !pair.swept ? reuse : clear - near;
     } else {
       next_.insert(next_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
@@ -331,8 +183,9 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
       const double margin = pair.swept ? way : way + kNear * thin;
       const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());
       if (clearance(bodies, pair.key, broad.shiftOf(pair.key), reach + way) <= reach + way)
-        find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept, lively_.data() + pair.first,
-             pair.count, next_, {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
+        finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept,
+                     lively_.data() + pair.first, pair.count, next_,
+                     {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
     }
     pair.first = first;
     pair.count = static_cast<int>(next_.size()) - first;
@@ -391,64 +244,6 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
     any = true;
   }
   return any;
-}
-
-void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {
-  crushed_.clear();
-  auto isCrushed = [&](const Contact& c) {
-    const double deep = kCrushed * thinner(bodies, c.a, c.b);
-    for (int k = 0; k < c.count; ++k) {
-      const ContactPoint& p = c.points[k];
-      if (p.impulseN > 0 && p.gap + gapMoved(bodies, c, p) < -deep &&
-          partingSpeed(bodies, c, p) < -kCrushSpeed)
-        return true;
-    }
-    return false;
-  };
-  for (const Contact& c : lively_)
-    if (isCrushed(c)) {
-      if (bodies.moves(c.a)) crushed_.push_back(c.a);
-      if (bodies.moves(c.b)) crushed_.push_back(c.b);
-    }
-  if (crushed_.empty()) return;
-  std::sort(crushed_.begin(), crushed_.end());
-  crushed_.erase(std::unique(crushed_.begin(), crushed_.end()), crushed_.end());
-  auto speed = [&](int body) {
-    const Motion& v = before[body];
-    return length(v.linear()) + std::abs(v.turn) * bodies.extent[body].turningReach;
-  };
-  // Nothing that gives way can make it faster than the fastest of those around it.
-  crushSpeed_.resize(crushed_.size());
-  for (std::size_t k = 0; k < crushed_.size(); ++k) crushSpeed_[k] = speed(crushed_[k]);
-  auto place = [&](int body) {
-    const auto at = std::lower_bound(crushed_.begin(), crushed_.end(), body);
-    return at != crushed_.end() && *at == body ? static_cast<int>(at - crushed_.begin()) : -1;
-  };
-  for (Contact& c : lively_) {
-    const int a = place(c.a), b = place(c.b);
-    if (a >= 0) crushSpeed_[a] = std::max(crushSpeed_[a], speed(c.b));
-    if (b >= 0) crushSpeed_[b] = std::max(crushSpeed_[b], speed(c.a));
-  }
-  bool any = false;
-  for (std::size_t k = 0; k < crushed_.size(); ++k) {
-    Motion& v = bodies.velocity[crushed_[k]];
-    const double linear = length(v.linear()),
-                 turning = std::abs(v.turn) * bodies.extent[crushed_[k]].turningReach;
-    const double most = crushSpeed_[k];
-    crushSpeed_[k] = linear > most || turning > most ? -1 : 0;  // from here on: whether it was
-    any |= crushSpeed_[k] < 0;
-    if (linear > most) {
-      v.x *= most / linear;
-      v.y *= most / linear;
-    }
-    if (turning > most) v.turn *= most / turning;
-  }
-  if (!any) return;
-  for (Contact& c : lively_) {
-    const int a = place(c.a), b = place(c.b);
-    if ((a >= 0 && crushSpeed_[a] < 0) || (b >= 0 && crushSpeed_[b] < 0))
-      for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;
-  }
 }
 
 void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, double h,

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "rigid/broad_phase.h"
-#include "rigid/collide_bodies.h"
 #include "rigid/contact.h"
 #include "rigid/contact_blocks.h"
+#include "rigid/pair_contacts.h"
 #include "rigid/passing.h"
 
 namespace smokebox {
@@ -62,16 +62,6 @@ class NarrowPhase {
     Motion velocity;  // at the step's start
     double room = 0;  // how far its points may be from where that takes them
   };
-  /// The moment within the sub-step from which contacts are looked for, and what impacts before it have
-  /// changed of the two bodies' ways.
-  struct Later {
-    double time = 0;
-    Motion struckA, struckB;
-  };
-  /// Adds the contacts of a pair whose gap is below `margin`. Gives how far the two are surely apart: 0 where
-  /// there are any.
-  double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
-              const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
 
@@ -84,7 +74,7 @@ class NarrowPhase {
   std::vector<int> calmFirst_;             // by pair: range in calm_
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in
   bool pairsListed_ = false;
-  std::vector<PiecePair> pieces_;
+  PairContacts finder_;
   std::vector<PairKey> late_, swept_;
   Passing passing_;
   std::vector<int> leaving_, turned_, crushed_;

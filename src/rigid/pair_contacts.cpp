@@ -1,0 +1,154 @@
+#include "rigid/pair_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rigid/collide.h"
+#include "rigid/contact_sweeps.h"
+#include "rigid/distance.h"
+#include "rigid/passing.h"
+
+namespace smokebox {
+
+namespace {
+/// Distance of the point from the box around a body's pieces.
+double distanceFrom(const Extent& box, const Frame& frame, Vec2 point) {
+  const Vec2 p = toLocal(frame, point) - box.centre;
+  const Vec2 out{std::max(std::abs(p.x) - box.half.x, 0.0), std::max(std::abs(p.y) - box.half.y, 0.0)};
+  return length(out);
+}
+}  // namespace
+
+double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough) {
+  const Extent &a = bodies.extent[key.a], &b = bodies.extent[key.b];
+  const Vec2 pa = bodies.positionNow(key.a), pb = bodies.positionNow(key.b) + shift;
+  const double circles = length(pb - pa) - a.reach - b.reach;
+  if (circles > enough) return circles;
+  const double boxA = a.radius > 0 ? circles : distanceFrom(a, bodies.frameNow(key.a), pb) - b.reach;
+  if (boxA > enough || b.radius > 0) return std::max(circles, boxA);
+  Frame fb = bodies.frameNow(key.b);
+  fb.position = pb;
+  return std::max({circles, boxA, distanceFrom(b, fb, pa) - a.reach});
+}
+
+double relativeSpeed(const Bodies& bodies, int a, int b) {
+  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
+  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach +
+         std::abs(vb.turn) * bodies.extent[b].turningReach;
+}
+
+double thinner(const Bodies& bodies, int a, int b) {
+  return std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
+}
+void bringUpToDate(const Bodies& bodies, Contact& contact) {
+  for (int k = 0; k < contact.count; ++k)
+    contact.points[k].gap += gapMoved(bodies, contact, contact.points[k]);
+  const int edges = contact.face == 1 ? contact.a : contact.b;
+  const Motion &da = bodies.moved[contact.a], &db = bodies.moved[contact.b];
+  if (contact.face == 0) return;
+  const Turn by = turnedBy({}, bodies.moved[edges].turn);
+  contact.normal = rotate(by, contact.normal);
+  const Turn corners = turnedBy({}, contact.face == 1 ? db.turn : da.turn);
+  const Vec2 apart = bodies.positionNow(contact.b) + contact.shift - bodies.positionNow(contact.a);
+  for (int k = 0; k < contact.count; ++k) {
+    ContactPoint& p = contact.points[k];
+    if (contact.face == 1) {
+      p.armB = rotate(corners, p.armB);
+      p.armA = p.armB + apart;
+    } else {
+      p.armA = rotate(corners, p.armA);
+      p.armB = p.armA - apart;
+    }
+  }
+}
+
+double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
+                          bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
+                          const Later& later) {
+  const BodyDef &a = bodies.def[key.a], &b = bodies.def[key.b];
+  auto ahead = [&](int body, const Motion& struck) -> Motion {
+    const Motion& v = bodies.velocity[body];
+    return {struck.x + later.time * v.x, struck.y + later.time * v.y, struck.turn + later.time * v.turn};
+  };
+  const Motion aheadA = ahead(key.a, later.struckA), aheadB = ahead(key.b, later.struckB);
+  Frame fa = bodies.frameNow(key.a), fb = bodies.frameNow(key.b);
+  if (later.time > 0) {
+    fa = {fa.position + aheadA.linear(), turnedBy(fa.turn, aheadA.turn)};
+    fb = {fb.position + aheadB.linear(), turnedBy(fb.turn, aheadB.turn)};
+  }
+  fb.position = fb.position + shift;
+  const double rest = h - later.time;
+  const bool onePair = findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
+  double clear = onePair ? 1e300 : margin;
+  Manifold manifold;
+  for (const PiecePair& pieces : pieces_) {
+    const ConvexPiece &pa = a.shape->pieces[pieces.a], &pb = b.shape->pieces[pieces.b];
+    const Vec2 apart = toWorld(fb, pb.centre) - toWorld(fa, pa.centre);
+    const double near = pa.reach + pb.reach + margin;
+    if (dot(apart, apart) > near * near) {
+      clear = std::min(clear, length(apart) - pa.reach - pb.reach);
+      continue;
+    }
+    double share = 0;
+    Frame ta = fa, tb = fb;
+    if (swept) {
+      const double target = kSweptTarget * thinner(bodies, key.a, key.b);
+      if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
+        const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
+        const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
+        const auto hit = timeOfImpact(pa, sa, pb, sb, target);
+        clear = 0;
+        if (!hit) continue;
+        share = *hit;
+        ta = frameAt(sa, share);
+        tb = frameAt(sb, share);
+        if (!collide(pa, ta, pb, tb, 4 * target, manifold)) continue;
+      }
+    } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
+      clear = std::min(clear, manifold.apart);
+      continue;
+    }
+    clear = 0;
+    Contact contact;
+    contact.a = key.a;
+    contact.b = key.b;
+    contact.pieceA = pieces.a;
+    contact.pieceB = pieces.b;
+    contact.normal = manifold.normal;
+    contact.shift = shift;
+    contact.count = manifold.count;
+    contact.face = manifold.face;
+    contact.friction = std::sqrt(a.friction * b.friction);
+    contact.bounce = std::max(a.bounce, b.bounce);
+    for (int k = 0; k < manifold.count; ++k) {
+      ContactPoint& p = contact.points[k];
+      p.armA = manifold.points[k].point - ta.position;
+      p.armB = manifold.points[k].point - tb.position;
+      p.feature = manifold.points[k].feature;
+      const double speed = partingSpeed(bodies, contact, p);
+      contact.approach = std::max(contact.approach, -speed);
+      // As of the step's start, by the same straight-line rule that brings it up to date.
+      p.gap = manifold.points[k].gap - share * rest * speed - gapMoved(bodies, contact, p) -
+              dot(contact.normal, aheadB.linear() - aheadA.linear()) -
+              aheadB.turn * cross(p.armB, contact.normal) + aheadA.turn * cross(p.armA, contact.normal);
+      p.armA = p.armA + later.time * bodies.velocity[key.a].linear();
+      p.armB = p.armB + later.time * bodies.velocity[key.b].linear();
+    }
+    setMasses(bodies, contact);
+    for (int o = 0; o < oldCount; ++o) {
+      const Contact& before = old[o];
+      if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
+      contact.approach = std::max(contact.approach, before.approach);
+      for (int k = 0; k < contact.count; ++k)
+        for (int l = 0; l < before.count; ++l)
+          if (before.points[l].feature == contact.points[k].feature) {
+            contact.points[k].impulseN = before.points[l].impulseN;
+            contact.points[k].impulseT = before.points[l].impulseT;
+          }
+    }
+    found.push_back(contact);
+  }
+  return clear;
+}
+
+}  // namespace smokebox

@@ -1,0 +1,40 @@
+// The contacts of one pair of bodies: found at its places now, or where a swept test says that they will
+// meet; carried along with bodies that move a little; and bounds, cheap, on how near the two can be.
+#pragma once
+#include <vector>
+
+#include "rigid/broad_phase.h"
+#include "rigid/collide_bodies.h"
+#include "rigid/contact.h"
+
+namespace smokebox {
+
+/// The smaller of two bodies' smallest widths, m.
+double thinner(const Bodies& bodies, int a, int b);
+/// Largest speed of any point of one against any of the other, m/s.
+double relativeSpeed(const Bodies& bodies, int a, int b);
+/// A bound from below on how far two bodies are apart, m: by the circles around them, then by the box of one
+/// and the circle of the other. `enough`: what needs no better one.
+double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough);
+/// Moves a contact along with its bodies, which have moved a little since it was found: the normal turns with
+/// the one whose edge it stands on, the points go with the other one's corners.
+void bringUpToDate(const Bodies& bodies, Contact& contact);
+
+class PairContacts {
+ public:
+  /// The moment within the sub-step from which contacts are looked for, and what impacts before it have
+  /// changed of the two bodies' ways.
+  struct Later {
+    double time = 0;
+    Motion struckA, struckB;
+  };
+  /// Adds the contacts of a pair whose gap is below `margin`, with the impulses of its `old` ones; `swept`:
+  /// of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any.
+  double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
+              const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
+
+ private:
+  std::vector<PiecePair> pieces_;
+};
+
+}  // namespace smokebox
