@@ -31,15 +31,6 @@ double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double en
   return std::max({circles, boxA, distanceFrom(b, fb, pa) - a.reach});
 }
 
-double relativeSpeed(const Bodies& bodies, int a, int b) {
-  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
-  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach +
-         std::abs(vb.turn) * bodies.extent[b].turningReach;
-}
-
-double thinner(const Bodies& bodies, int a, int b) {
-  return std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
-}
 void bringUpToDate(const Bodies& bodies, Contact& contact) {
   for (int k = 0; k < contact.count; ++k)
     contact.points[k].gap += gapMoved(bodies, contact, contact.points[k]);

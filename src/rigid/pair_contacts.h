@@ -1,6 +1,8 @@
 // The contacts of one pair of bodies: found at its places now, or where a swept test says that they will
 // meet; carried along with bodies that move a little; and bounds, cheap, on how near the two can be.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "rigid/broad_phase.h"
@@ -10,9 +12,15 @@
 namespace smokebox {
 
 /// The smaller of two bodies' smallest widths, m.
-double thinner(const Bodies& bodies, int a, int b);
+inline double thinner(const Bodies& bodies, int a, int b) {
+  return std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
+}
 /// Largest speed of any point of one against any of the other, m/s.
-double relativeSpeed(const Bodies& bodies, int a, int b);
+inline double relativeSpeed(const Bodies& bodies, int a, int b) {
+  const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
+  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach +
+         std::abs(vb.turn) * bodies.extent[b].turningReach;
+}
 /// A bound from below on how far two bodies are apart, m: by the circles around them, then by the box of one
 /// and the circle of the other. `enough`: what needs no better one.
 double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough);
