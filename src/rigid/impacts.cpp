@@ -14,7 +14,11 @@ constexpr double kTogether = 0.02;
 // Impacts of one body within a sub-step, at most.
 constexpr int kMostTimes = 8;
 // After so many, the slowest approach that still bounces doubles with each one: a heap comes to rest soon.
-constexpr int kFreeTimes = 2;
+constexpr int kFreeTimes = 2, kFreeTimesFlying = 6;
+
+// Of the slowest approach that bounces, where both fly freely: their speeds are true to the last bit, while
+// what lies on something seems to fall by up to a sub-step's gravity before the contact solver holds it.
+constexpr double kOfFlying = 0.05;
 
 // Impacts of a step, beyond so many and so many for each body: the slowest approach that still bounces
 // doubles with each further so many. A crowd that is driven together settles what is left in the contact
@@ -47,7 +51,7 @@ Impacts::Approach Impacts::approach(const Bodies& bodies, const std::vector<Moti
   double t = now;
   if (gap + (v + 0.5 * a * now) * now > 0) {
     const double root = v * v - 2 * a * gap;
-    if (root < 0 || v >= 0) return {};
+    if (root < 0 || (v >= 0 && a >= 0)) return {};  // thrown up, it may fall back
     t = std::max(2 * gap / (-v + std::sqrt(root)), now);
     if (t > h) return {};
   }
@@ -165,7 +169,9 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
     struck[count++] = point;
   }
   // For the contact solver, whose impulses act where the bodies' straight ways of after the impacts begin:
-  // gaps and arms that come to the same places now.
+  // gaps and arms that come to the same places at the sub-step's end. Now the ways are bent against the
+  // straight ones.
+  const double bend = 0.5 * dot(acceleration(bodies, contact), n) * now * (now - h);
   auto settle = [&] {
     const Vec2 atA = bodies.positionNow(contact.a) + way[contact.a].linear(),
                atB = bodies.positionNow(contact.b) + way[contact.b].linear() + contact.shift;
@@ -174,7 +180,7 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
       const double speed = partingSpeed(bodies, contact, point);
       point.armA = point.armA + (xa - atA);
       point.armB = point.armB + (xb - atB);
-      point.gap -= now * speed + gapMoved(bodies, contact, point) + gapOf(way, contact, point);
+      point.gap -= bend + now * speed + gapMoved(bodies, contact, point) + gapOf(way, contact, point);
     }
     setMasses(bodies, contact);
   };
@@ -221,15 +227,19 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
 }
 
 double Impacts::leastOf(const Contact& contact, double least) const {
+  const bool flying = flying_[contact.a] && flying_[contact.b];
+  if (flying) least *= kOfFlying;
   const int times = std::max(times_[contact.a], times_[contact.b]);
   const long bodies = static_cast<long>(times_.size()), over = inStep_ - kFreeOfStep - kFreeOfBody * bodies;
-  const long doublings = std::max(0, times - kFreeTimes) + std::max(0L, over) / (kDoubling + bodies / 4);
+  const long doublings = std::max(0, times - (flying ? kFreeTimesFlying : kFreeTimes)) +
+                         std::max(0L, over) / (kDoubling + bodies / 4);
   return doublings == 0 ? least : least * static_cast<double>(1L << std::min(doublings, 40L));
 }
 
-void Impacts::begin(int bodies) {
-  struckAt_.assign(bodies, 0);
-  times_.assign(bodies, 0);
+void Impacts::begin(const std::vector<char>& flying) {
+  struckAt_.assign(flying.size(), 0);
+  times_.assign(flying.size(), 0);
+  flying_ = flying;
 }
 
 void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,

@@ -18,8 +18,8 @@ namespace smokebox {
 class Impacts {
  public:
   void beginStep() { inStep_ = 0; }
-  /// Before the first run of a sub-step.
-  void begin(int bodies);
+  /// Before the first run of a sub-step. `flying`, by body: nothing pressed on it in the last one.
+  void begin(const std::vector<char>& flying);
   /// `contacts`: those that may bounce. Slower approaches than `least` (m/s) are left to the contact solver.
   /// Adds what the impacts change of the bodies' ways to `way`.
   void run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
@@ -62,6 +62,7 @@ class Impacts {
   long count_ = 0, inStep_ = 0;
   std::vector<double> struckAt_;
   std::vector<int> times_;  // by body: impacts within the sub-step
+  std::vector<char> flying_;
   std::vector<Event> heap_;
   std::vector<int> stamps_;
   std::vector<int> firstAt_, nextA_, nextB_;  // lists of contacts at each body

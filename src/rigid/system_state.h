@@ -34,6 +34,7 @@ struct RigidSystem::State {
   double sweep(double h, bool first);
   void sweepRough(double h, double change);
   void findCalmShare();
+  void findFlying(double h);
   void yieldTorn();
   void findWays(double h, bool withStruck);
   void impacts(double h);
@@ -61,6 +62,7 @@ struct RigidSystem::State {
   std::vector<Motion> beforeThat;  // and before the one before it
   std::vector<Motion> struck;      // what impacts add to a body's way in this sub-step
   std::vector<Motion> start;       // velocities before the contact solver
+  std::vector<char> flying;        // it hardly changed them; kept where something may bounce
   std::vector<Motion> calmShare;   // what the calm contacts added to them in the last sub-step
   bool shareKnown = false;
   bool firstOfStep = false;  // sub-step
@@ -76,6 +78,11 @@ struct RigidSystem::State {
     Drive whole, half;  // of a sub-step
   };
   Drive driveOver(const BodyDef& def, double time) const;
+  /// Damping takes its share of what a force gives a body in a sub-step, as it does of what gravity gives:
+  /// seen by forces the body is that much heavier, by impacts it is not.
+  void findSeenByForces();
+  bool damped = false;                  // a body is
+  std::vector<InverseMass> forImpacts;  // while bodies.inverse is for forces
   std::vector<Drives> drives;
   BroadPhase broad;
   NarrowPhase narrow;

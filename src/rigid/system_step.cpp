@@ -89,21 +89,38 @@ void RigidSystem::State::setInverse(int body) {
   bodies.inverse[body] = {1 / def.mass, def.inertia > 0 ? 1 / def.inertia : 0};
 }
 
+namespace {
+/// The integral of exp(-c t): the time in which a force without damping does as much.
+double timeUnder(double c, double time) {
+  const double x = c * time;
+  return x < 1e-3 ? time * (1 - x / 2 * (1 - x / 3 * (1 - x / 4))) : (1 - exact::exp(-x)) / c;
+}
+}  // namespace
+
 RigidSystem::State::Drive RigidSystem::State::driveOver(const BodyDef& def, double time) const {
-  const double c = def.linearDamping, x = c * time;
   Drive drive;
-  if (c > 0) drive.linear = exact::exp(-x);
+  if (def.linearDamping > 0) drive.linear = exact::exp(-def.linearDamping * time);
   if (def.angularDamping > 0) drive.angular = exact::exp(-def.angularDamping * time);
-  // The integral of exp(-c t).
-  const double effective = x < 1e-3 ? time * (1 - x / 2 * (1 - x / 3 * (1 - x / 4))) : (1 - drive.linear) / c;
-  drive.gain = effective * def.gravityScale * gravity;
+  drive.gain = timeUnder(def.linearDamping, time) * def.gravityScale * gravity;
   return drive;
+}
+
+void RigidSystem::State::findSeenByForces() {
+  if (!damped) return;
+  const double h = dt / method.subSteps;
+  forImpacts = bodies.inverse;
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    if (!bodies.moves(b)) continue;
+    bodies.inverse[b].mass *= timeUnder(bodies.def[b].linearDamping, h) / h;
+    bodies.inverse[b].inertia *= timeUnder(bodies.def[b].angularDamping, h) / h;
+  }
 }
 
 // Velocities belong to the middle of a sub-step: those that were set are taken half of one back, and where
 // gravity has changed, what it did to the last half is put right.
 void RigidSystem::State::startVelocities(double h) {
   firstOfStep = true;
+  damped = false;
   constexpr double kLeast = 1e-6;  // of a velocity; what is damped more has no past to come from
   drives.resize(bodies.count());
   for (int b = kWalls; b < bodies.count(); ++b) {
@@ -118,6 +135,7 @@ void RigidSystem::State::startVelocities(double h) {
       drives[b] = {};
       continue;
     }
+    damped |= def.linearDamping > 0 || def.angularDamping > 0;
     const Drive now = driveOver(def, 0.5 * h), was = drives[b].half;
     drives[b] = {driveOver(def, h), now};
     if (fresh[b] & 1) {
@@ -135,6 +153,7 @@ void RigidSystem::State::startVelocities(double h) {
 void RigidSystem::State::beginStep(double step) {
   dt = timeLeft = step;
   startVelocities(dt / method.subSteps);
+  findSeenByForces();
   touches.clear();
   broad.update(bodies, gravity, dt);
   narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
@@ -160,6 +179,7 @@ void RigidSystem::State::beginStep(double step) {
   calmShare.assign(bodies.count(), Motion{});
   shareKnown = false;
   impact.beginStep();
+  flying.resize(bodies.count(), 1);
   struck.assign(bodies.count(), Motion{});
   way.assign(bodies.count(), Motion{});
 }
@@ -184,7 +204,9 @@ void RigidSystem::State::bounce(double h) {
   if (anyStruck) std::fill(struck.begin(), struck.end(), Motion{});
   anyStruck = false;
   if (!mayBounce) return;
+  if (damped) bodies.inverse.swap(forImpacts);
   impacts(h);
+  if (damped) bodies.inverse.swap(forImpacts);
   if (!anyStruck) return;
   // From here on the bodies go straight ways, as if they had come from where these begin.
   for (int b = kWalls; b < bodies.count(); ++b) {
@@ -197,7 +219,7 @@ void RigidSystem::State::bounce(double h) {
 
 void RigidSystem::State::impacts(double h) {
   const double least = kRestingSubSteps * h * length(gravity) + 1e-7;
-  impact.begin(bodies.count());
+  impact.begin(flying);
   constexpr int kRounds = 6;  // a body that is struck may meet others of which nothing was known yet
   for (int round = 0; round < kRounds; ++round) {
     bouncers.clear();
@@ -277,6 +299,17 @@ void RigidSystem::State::yieldTorn() {
     v.x *= most / speed;
     v.y *= most / speed;
     v.turn *= most / speed;
+  }
+}
+
+void RigidSystem::State::findFlying(double h) {
+  constexpr double kTouch = 1e-3;  // of what gravity does
+  const double least = kTouch * h * length(gravity);
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Motion &v = bodies.velocity[b], &was = start[b];
+    flying[b] = std::abs(v.x - was.x) + std::abs(v.y - was.y) +
+                    bodies.extent[b].reach * std::abs(v.turn - was.turn) <=
+                least;
   }
 }
 
@@ -376,6 +409,7 @@ void RigidSystem::State::solveContacts(double h) {
   }
   if (!joints.empty()) yieldTorn();
   narrow.yieldCrushed(bodies, start);
+  if (mayBounce) findFlying(h);
   findWays(h, false);
   findCalmShare();
 }
@@ -499,6 +533,7 @@ void RigidSystem::State::endStep(double step) {
   narrow.endStep(bodies, broad);
   springs.endStep(bodies);
   joints.endStep(bodies);
+  if (damped) bodies.inverse.swap(forImpacts);
 
   for (int b = kWalls; b < bodies.count(); ++b) {
     if (!bodies.there[b]) continue;
