@@ -119,7 +119,7 @@ int runRender(const RenderOptions& options) {
     summary = world.summary();
   }
   const double seconds = progress.seconds();
-  if (stats) stats->write(spec.name, summary, drawn / seconds);
+  if (stats) stats->finish(spec.name, summary, drawn / seconds);
   progress.clear();
   if (!options.quiet) tellDone(names, drawn, seconds);
   return 0;

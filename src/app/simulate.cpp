@@ -27,7 +27,7 @@ int runSimulate(const SimulateOptions& options) {
     if (stats) stats->add(world.figures());
   }
   const SummaryFigures summary = world.summary();
-  if (stats) stats->write(world.spec().name, summary, std::nullopt);
+  if (stats) stats->finish(world.spec().name, summary, std::nullopt);
   std::printf("%s: %ld steps, %g s, %ld cells, %d threads, %.2f ms a step\n", world.spec().name.c_str(),
               summary.steps, world.time(), summary.cells, summary.threads, summary.stepMsMedian);
   std::printf("divergence %.1e, smoke error %.1e, peak memory %.0f MB, state %s\n", summary.divergenceMax,

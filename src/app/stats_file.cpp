@@ -2,9 +2,16 @@
 
 #include <sys/resource.h>
 
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "app/command_line.h"
+#include "base/errors.h"
 #include "base/part_file.h"
 
 namespace smokebox {
@@ -13,21 +20,52 @@ using Json = nlohmann::ordered_json;  // NaN and infinity come out as null
 
 namespace {
 
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
 Json pair(Vec2 v) { return Json::array({v.x, v.y}); }
+
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// In the shortest form that reads back as the same number.
+void addNumber(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += "null";
+    return;
+  }
+  char digits[32];
+  const std::string_view made(digits, std::to_chars(digits, digits + sizeof digits, value).ptr - digits);
+  text += made;
+  if (made.find_first_of(".e") == made.npos) text += ".0";
+}
+
+/// By hand: a tree of all bodies would take longer than the step that moved them.
+void addBody(std::string& text, const BodyFigures& body) {
+  auto number = [&](const char* name, double value) {
+    text += name;
+    addNumber(text, value);
+  };
+  auto vector = [&](const char* name, Vec2 v) {
+    number(name, v.x);
+    number(",", v.y);
+    text += ']';
+  };
+  text += "{\"name\":" + textOf(body.name);
+  vector(",\"position\":[", body.position);
+  number(",\"angle\":", body.angleDegrees);
+  vector(",\"velocity\":[", body.velocity);
+  number(",\"spin\":", body.spinDegrees);
+  vector(",\"force\":[", body.force);
+  number(",\"torque\":", body.torque);
+  text += '}';
+}
 
 Json stepRecord(const StepFigures& f) {
   Json ms = Json::object();
   for (const auto& [stage, value] : f.stageMs) ms[stage] = value;
   ms["total"] = f.totalMs;
-  Json bodies = Json::array(), probes = Json::array();
-  for (const BodyFigures& b : f.bodies)
-    bodies.push_back({{"name", b.name},
-                      {"position", pair(b.position)},
-                      {"angle", b.angleDegrees},
-                      {"velocity", pair(b.velocity)},
-                      {"spin", b.spinDegrees},
-                      {"force", pair(b.force)},
-                      {"torque", b.torque}});
+  Json probes = Json::array();
   for (const ProbeFigures& p : f.probes)
     probes.push_back({{"name", p.name},
                       {"velocity", pair(p.velocity)},
@@ -53,26 +91,53 @@ Json stepRecord(const StepFigures& f) {
       {"energy", {{"fluid", f.energyFluid}, {"bodies", f.energyBodies}, {"potential", f.energyPotential}}},
       {"contacts", f.contacts},
       {"overlap", f.overlap},
-      {"bodies", std::move(bodies)},
       {"probes", std::move(probes)}};
 }
 
 }  // namespace
 
-struct StatsFile::Records {
-  Json steps = Json::array();
+struct StatsFile::Output {
+  explicit Output(const std::string& name)
+      : target(name), part(name), file(std::fopen(part.path().c_str(), "wb")) {
+    if (!file) fail();
+  }
+  void put(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) fail();
+  }
+  void close() {
+    // What does not fit shows only when the buffer is flushed.
+    if (std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0) fail();
+    part.commit();
+  }
+  [[noreturn]] void fail() const { throw IoError(target + ": " + std::strerror(errno)); }
+
+  std::string target;
+  PartFile part;
+  std::unique_ptr<std::FILE, CloseFile> file;
+  std::string line;
+  long records = 0;
 };
 
-StatsFile::StatsFile(const std::string& file) : file_(file), records_(std::make_unique<Records>()) {
-  const PartFile probe(file);
-}
+StatsFile::StatsFile(const std::string& file) : output_(std::make_unique<Output>(file)) {}
 
 StatsFile::~StatsFile() = default;
 
-void StatsFile::add(const StepFigures& figures) { records_->steps.push_back(stepRecord(figures)); }
+void StatsFile::add(const StepFigures& figures) {
+  std::string& line = output_->line;  // one record a line: easy to read and to compare
+  line = output_->records++ == 0 ? "{\"steps\": [\n" : ",\n";
+  line += textOf(stepRecord(figures));
+  line.back() = ',';  // the record goes on
+  line += "\"bodies\":[";
+  for (const BodyFigures& body : figures.bodies) {
+    addBody(line, body);
+    line += ',';
+  }
+  if (!figures.bodies.empty()) line.pop_back();
+  line += "]}";
+  output_->put(line);
+}
 
-void StatsFile::write(const std::string& scene, const SummaryFigures& s,
-                      std::optional<double> filmFps) const {
+void StatsFile::finish(const std::string& scene, const SummaryFigures& s, std::optional<double> filmFps) {
   const Json summary = {{"scene", scene},
                         {"version", programVersion()},
                         {"steps", s.steps},
@@ -85,14 +150,9 @@ void StatsFile::write(const std::string& scene, const SummaryFigures& s,
                         {"overlap_max", s.overlapMax},
                         {"peak_memory_mb", peakMemoryMb()},
                         {"state_hash", s.stateHash}};
-  std::string text = "{\"steps\": [";
-  const auto dump = [](const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
-  for (std::size_t k = 0; k < records_->steps.size(); ++k)  // one record a line: easy to read and to compare
-    text += (k ? ",\n" : "\n") + dump(records_->steps[k]);
-  text += "],\n\"summary\": " + dump(summary) + "}\n";
-  writeWholeFile(file_, text);
+  output_->put((output_->records == 0 ? "{\"steps\": [" : "") + std::string("],\n\"summary\": ") +
+               textOf(summary) + "}\n");
+  output_->close();
 }
 
 double peakMemoryMb() {

@@ -1,4 +1,5 @@
-// The figures of a run as JSON, with the names of section 2 of the design.
+// The figures of a run as JSON, with the names of section 2 of the design. Each step's record goes to the
+// file at once: thousands of bodies over thousands of steps need no memory.
 #pragma once
 #include <memory>
 #include <optional>
@@ -10,18 +11,18 @@ namespace smokebox {
 
 class StatsFile {
  public:
-  /// Finds out at once whether the file can be written. Throws IoError.
+  /// Opens the file, beside its final name. Throws IoError.
   explicit StatsFile(const std::string& file);
   ~StatsFile();
 
+  /// Throws IoError.
   void add(const StepFigures& figures);
-  /// Writes the whole file. `filmFps`: frames drawn per second of wall time. Throws IoError.
-  void write(const std::string& scene, const SummaryFigures& summary, std::optional<double> filmFps) const;
+  /// Completes the file. `filmFps`: frames drawn per second of wall time. Throws IoError.
+  void finish(const std::string& scene, const SummaryFigures& summary, std::optional<double> filmFps);
 
  private:
-  struct Records;
-  std::string file_;
-  std::unique_ptr<Records> records_;
+  struct Output;
+  std::unique_ptr<Output> output_;
 };
 
 /// The most memory that this process has had, in MB.

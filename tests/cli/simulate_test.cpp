@@ -99,6 +99,34 @@ TEST(Simulate, RunsTheDurationOfTheScene) {
   EXPECT_EQ(folder.names(), std::set<std::string>{"scene.yaml"});
 }
 
+TEST(Simulate, FiguresOfManyBodiesTakeNoMemory) {
+  // A record goes to the file as soon as it is there: ten times the steps of a thousand bodies, the same
+  // memory.
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "what is freed stays in quarantine";
+#endif
+  TemporaryFolder folder;
+  writeText(folder / "scene.yaml",
+            "domain: {size: [20, 20], resolution: 20}\ntime: {step: 1/60, duration: 2}\nbodies:\n"
+            "  - {name: dot, shape: {circle: {radius: 0.1}}, position: [0.3, 0.3],\n"
+            "     repeat: {grid: [40, 25], spacing: [0.45, 0.7]}}\n");
+  double peak[2];
+  for (const int k : {0, 1}) {
+    const int steps = k == 0 ? 6 : 60;
+    const RunResult run = runProgram(
+        {"simulate", "scene.yaml", "--steps", std::to_string(steps), "--stats", "s.json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Json json = figures(folder / "s.json");
+    ASSERT_EQ(json["steps"].size(), static_cast<std::size_t>(steps));
+    const Json& last = json["steps"][steps - 1]["bodies"][999];
+    EXPECT_EQ(last["name"], "dot.999");
+    EXPECT_EQ(last["position"][0].get<double>(), 0.3 + 39 * 0.45);
+    EXPECT_TRUE(last["torque"].is_number_float());
+    peak[k] = json["summary"]["peak_memory_mb"].get<double>();
+  }
+  EXPECT_LT(peak[1], peak[0] + 20);  // a tree of all of it took 60 MB more
+}
+
 TEST(Simulate, FullDiskIsAnInputOutputError) {
   // Whether the figures or the summary do not fit, the status is 4.
   TemporaryFolder folder;
