@@ -192,6 +192,11 @@ void RigidSystem::setMotor(int joint, double speed, double limit) {
   state_->joints.setMotor(joint, speed, limit);
 }
 
+void RigidSystem::setWallSpeed(int side, double speed) {
+  Motion& v = state_->bodies.velocity[side];
+  (side < 2 ? v.y : v.x) = speed;
+}
+
 void RigidSystem::moveTo(int body, Vec2 position, double angleRad) {
   state_->targetPlace[body] = position;
   state_->targetAngle[body] = angleRad;

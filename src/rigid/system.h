@@ -100,6 +100,8 @@ class RigidSystem {
   void setSpring(int spring, double length, double stiffness, double damping);
   void setSpringSlack(int spring, double slack);
   void setMotor(int joint, double speed, double limit);
+  /// Of a wall of the domain along itself (see RigidWalls).
+  void setWallSpeed(int side, double speed);
   /// A body without mass: where it is at the end of the next step; it pushes, carries and spins what it
   /// meets.
   void moveTo(int body, Vec2 position, double angleRad);

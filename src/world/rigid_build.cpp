@@ -7,6 +7,11 @@
 
 namespace smokebox {
 
+double wallSpeed(const DomainSpec& domain, int side) {
+  const WallSpec& wall = domain.walls[side];
+  return wall.kind == WallKind::noSlip ? wall.velocity[side < 2 ? 1 : 0](0, 0, 0) : 0;
+}
+
 namespace {
 
 RigidWalls wallsOf(const DomainSpec& domain) {
@@ -19,7 +24,7 @@ RigidWalls wallsOf(const DomainSpec& domain) {
     walls.sides[side] = wall.kind == WallKind::open       ? Kind::open
                         : wall.kind == WallKind::periodic ? Kind::periodic
                                                           : Kind::closed;
-    if (wall.kind == WallKind::noSlip) walls.speeds[side] = wall.velocity[side < 2 ? 1 : 0](0, 0, 0);
+    walls.speeds[side] = wallSpeed(domain, side);
   }
   return walls;
 }

@@ -92,6 +92,8 @@ void RigidStage::setShown(const std::string& name, bool shown) {
 void RigidStage::adopt(const SceneSpec& spec, const std::string& path) {
   const std::vector<std::string> steps = pathSteps(path);
   if (steps[0] == "gravity") system_.setGravity(spec.gravity);
+  for (int side = 0; steps[0] == "walls" && side < 4; ++side)
+    system_.setWallSpeed(side, wallSpeed(spec.domain, side));
   for (std::size_t k = 0; steps[0] == "solids" && k < solids_.size(); ++k)
     system_.setSurface(solids_[k].id, spec.solids[k].bounce, spec.solids[k].friction);
   if (steps.size() < 3) return;

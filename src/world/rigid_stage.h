@@ -21,6 +21,9 @@
 
 namespace smokebox {
 
+/// Of a side of the domain along itself, m/s.
+double wallSpeed(const DomainSpec& domain, int side);
+
 class RigidStage {
  public:
   /// `tolerance`: how far an outline may be from a curve, metres. `inFluid`: bodies have to be put on a grid.

@@ -268,6 +268,24 @@ TEST(WorldBodies, AMovingWallCarriesByFriction) {
   EXPECT_NEAR(bodyOf(world, "box").velocity.x, 1, 1e-3);
 }
 
+TEST(WorldBodies, AnEventSetsTheSpeedOfAWallAndOfASolid) {
+  // Truth: the box goes along with the floor, at 1 m/s until that is set to -0.5 m/s, and the other one with
+  // the solid under it, which sets off when its velocity is set.
+  World world = worldOf("walls: {bottom: {no-slip: [1, 0]}, left: periodic, right: periodic}\n" + kGravity +
+                        "solids: [{name: raft, shape: {box: {size: [1, 0.2]}}, position: [1, 2]}]\n"
+                        "bodies:\n- {name: box, shape: {box: {size: [0.4, 0.2]}}, position: [2, 0.1]}\n"
+                        "- {name: rider, shape: {box: {size: [0.4, 0.2]}}, position: [1, 2.2]}\n"
+                        "events:\n- {at: 1, set: {walls.bottom.no-slip: [-0.5, 0]}}\n"
+                        "- {at: 1, set: {solids.raft.motion.velocity: [0.3, 0.1]}}\n");
+  run(world, 1);
+  EXPECT_NEAR(bodyOf(world, "box").velocity.x, 1, 1e-9);
+  EXPECT_NEAR(bodyOf(world, "rider").velocity.x, 0, 1e-9);
+  run(world, 1);
+  EXPECT_NEAR(bodyOf(world, "box").velocity.x, -0.5, 1e-9);
+  EXPECT_NEAR(bodyOf(world, "rider").velocity.x, 0.3, 1e-9);
+  EXPECT_NEAR(bodyOf(world, "rider").velocity.y, 0.1, 1e-6);
+}
+
 TEST(WorldBodies, WhatLeavesIsToldOnce) {
   // Truth: through an open bottom the ball falls out of the world: one notice with its name, and no more of
   // it.
