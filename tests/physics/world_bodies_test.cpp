@@ -280,7 +280,7 @@ TEST(WorldBodies, AnEventSetsTheSpeedOfAWallAndOfASolid) {
   run(world, 1);
   EXPECT_NEAR(bodyOf(world, "box").velocity.x, 1, 1e-9);
   EXPECT_NEAR(bodyOf(world, "rider").velocity.x, 0, 1e-9);
-  run(world, 1);
+  run(world, 2);
   EXPECT_NEAR(bodyOf(world, "box").velocity.x, -0.5, 1e-9);
   EXPECT_NEAR(bodyOf(world, "rider").velocity.x, 0.3, 1e-9);
   EXPECT_NEAR(bodyOf(world, "rider").velocity.y, 0.1, 1e-6);
