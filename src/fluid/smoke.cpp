@@ -15,6 +15,9 @@ constexpr float kSliver = 0.25f;
 constexpr float kLargest = 1e30f;
 constexpr float kLeastCarried = 0.02f;
 constexpr double kFewQuanta = 8;  // that roundings make of a value
+// The share of what the bound is above the largest value that a step leaves: a crest between two cells may
+// rise again.
+constexpr float kBoundKept = 0.99f;
 
 // The smallest power of two q with value <= 2^23 q: twice as much still fits into the exact range of float32.
 float quantumFor(float value) {
@@ -26,7 +29,7 @@ float quantumFor(float value) {
 struct Channel {
   Field mass, value;
   Quantum quantum;
-  float highest = 0;   // largest value, or what it was when smoke was put aside that still is
+  float highest = 0;   // bound of the values: the largest of late, or when smoke was put aside that still is
   float swept = 0;     // the same after the sweeps
   float kept = 0;      // that of when smoke was put aside
   double ceiling = 0;  // no less than the largest value, without the rounding of many additions
@@ -426,6 +429,7 @@ void Smoke::Impl::end(int channel, const Boundary& b) {
   const bool aside = std::any_of(trapped.begin(), trapped.end(), own);
   c.kept = aside ? std::max(c.kept, before) : 0;
   c.highest = std::max(c.highest, c.kept);
+  if (c.highest > 0) c.highest = std::max(c.highest, c.highest + kBoundKept * (before - c.highest));
   if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.mass, c.value, c.active);
 }
 

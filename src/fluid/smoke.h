@@ -1,7 +1,8 @@
 // Smoke of any number of colours, carried conservatively: split sweeps that move mass and volume together,
-// 5th-order semi-Lagrangian fluxes, flux-corrected to stay between 0 and the largest value before the step
-// (Zalesak 1979 with the global bounds). What a moving solid sweeps up goes to the cells beside it and never
-// vanishes; cells with less than a quarter of their area open are merged with a neighbour for the sweep.
+// 7th-order semi-Lagrangian fluxes, flux-corrected to stay between 0 and the largest value of the last
+// hundred steps or so (Zalesak 1979 with the global bounds). What a moving solid sweeps up goes to the cells
+// beside it and never vanishes; cells with less than a quarter of their area open are merged with a neighbour
+// for the sweep.
 //
 // Mass is kept per cell in units of (smoke value) x (cell area): value = mass / open share. Sums are in m^2
 // of smoke.

@@ -247,29 +247,28 @@ std::size_t IrregularFaces::bytes() const {
 namespace {
 // Marks lie in rows -1 .. ny + 1 of columns -8 .. , eight to a word.
 constexpr int kMarkMargin = 8;
+constexpr std::uint8_t kSevenMeets = 1, kFiveMeets = 2;  // the stencil of that order meets what is not whole
 int markStride(const SmokeCells& cells) { return (cells.nx + 2 * kMarkMargin + 7) / 8 * 8; }
 }  // namespace
 
 // Marks faces below .. above of the line along `axis`, counted from cell or face (i, j), and their periodic
-// copies.
+// copies: those of the 5th-order stencil, and one more at either end, which only the 7th-order one reaches.
 void IrregularFaces::mark(const SmokeCells& cells, Axis axis, int i, int j, int below, int above) {
   const int stride = markStride(cells);
-  if (axis == Axis::x) {
-    std::uint8_t* row = marksX_.data() + (j + 1) * stride + kMarkMargin;
-    for (int k = i + below; k <= i + above; ++k) {
-      if (k >= -1 && k <= cells.nx + 1) row[k] = 1;
-      if (!cells.periodicX) continue;
-      if (k + cells.nx <= cells.nx + 1 && k + cells.nx >= -1) row[k + cells.nx] = 1;
-      if (k - cells.nx >= -1 && k - cells.nx <= cells.nx + 1) row[k - cells.nx] = 1;
-    }
-  } else {
-    std::uint8_t* column = marksY_.data() + stride + kMarkMargin + i;
-    for (int k = j + below; k <= j + above; ++k) {
-      if (k >= -1 && k <= cells.ny + 1) column[k * stride] = 1;
-      if (!cells.periodicY) continue;
-      if (k + cells.ny <= cells.ny + 1 && k + cells.ny >= -1) column[(k + cells.ny) * stride] = 1;
-      if (k - cells.ny >= -1 && k - cells.ny <= cells.ny + 1) column[(k - cells.ny) * stride] = 1;
-    }
+  const bool alongX = axis == Axis::x, periodic = alongX ? cells.periodicX : cells.periodicY;
+  const int n = alongX ? cells.nx : cells.ny, place = alongX ? i : j;
+  const std::ptrdiff_t step = alongX ? 1 : stride;
+  std::uint8_t* line =
+      alongX ? marksX_.data() + (j + 1) * stride + kMarkMargin : marksY_.data() + stride + kMarkMargin + i;
+  auto set = [&](int k, std::uint8_t mark) {
+    if (k >= -1 && k <= n + 1) line[k * step] |= mark;
+  };
+  for (int k = place + below - 1; k <= place + above + 1; ++k) {
+    const std::uint8_t reached = k < place + below || k > place + above ? kSevenMeets : kFiveMeets;
+    set(k, reached);
+    if (!periodic) continue;
+    set(k + n, reached);
+    set(k - n, reached);
   }
 }
 
@@ -287,7 +286,7 @@ void IrregularFaces::collect(const SmokeCells& cells, Axis axis) {
       std::memcpy(&eight, row + word, 8);
       if (!eight) continue;
       for (int k = word; k < word + 8; ++k)
-        if (row[k]) list.items.push_back({k - kMarkMargin, j});
+        if (row[k]) list.items.push_back({k - kMarkMargin, j, row[k] == kSevenMeets});
     }
   }
   list.start[cells.ny + 3] = static_cast<int>(list.items.size());

@@ -56,7 +56,7 @@ class CellClusters {
   std::vector<RootPlace> places_;  // while they are sorted
 };
 
-/// The faces whose 5th-order stencil meets a cut cell or a face that is not fully open; found anew when
+/// The faces whose 7th-order stencil meets a cut cell or a face that is not fully open; found anew when
 /// fractions change.
 class IrregularFaces {
  public:

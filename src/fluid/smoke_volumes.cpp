@@ -24,7 +24,7 @@ void wrapMargin(Field& f, Axis axis, int nx, int ny) {
   if (axis == Axis::x) {
     for (int j = 0; j < ny; ++j) {
       float* row = f.row(j);
-      for (int k = 1; k <= kReach; ++k) {
+      for (int k = 1; k <= kReach + 1; ++k) {
         row[-k] = row[nx - k];
         row[nx - 1 + k] = row[k - 1];
       }

@@ -21,24 +21,26 @@ constexpr float kClusterSlack = 8;  // clusters have more faces at which fluxes 
 // `d` is the distance between a face's high cell and its low cell.
 template <class Step>
 void fluxes(int n, const float* __restrict c, const float* __restrict r, const float* __restrict vLow,
-            const float* __restrict vHigh, Step d, float highest, float* __restrict donor,
-            float* __restrict extra) {
+            const float* __restrict vHigh, Step d, float* __restrict donor, float* __restrict extra) {
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     const float flow = c[k];
     const bool up = flow > 0;
-    const float l3 = r[k - 3 * d], l2 = r[k - 2 * d], l1 = r[k - d], h1 = r[k], h2 = r[k + d],
-                h3 = r[k + 2 * d];
-    const float a = up ? l3 : h3, b = up ? l2 : h2, mid = up ? l1 : h1, e = up ? h1 : l1, f = up ? h2 : l2;
+    const float l4 = r[k - 4 * d], l3 = r[k - 3 * d], l2 = r[k - 2 * d], l1 = r[k - d];
+    const float h1 = r[k], h2 = r[k + d], h3 = r[k + 2 * d], h4 = r[k + 3 * d];
+    const float z = up ? l4 : h4, a = up ? l3 : h3, b = up ? l2 : h2, mid = up ? l1 : h1;
+    const float e = up ? h1 : l1, f = up ? h2 : l2, y = up ? h3 : l3;
     const float vUp = up ? vLow[k] : vHigh[k];
     const float g = std::min(std::fabs(flow) / vUp, 1.0f);
     const float t1 = e - b, t2 = (e - mid) - (mid - b);
-    const float t3 = (f - a) - 2 * t1, t4 = (f + a) - 4 * (e + b) + 6 * mid;
-    const float s = 1 - 2 * g, w = (2 - g) * (1 + g);
-    float mean = mid + 0.25f * (1 - g) * (t1 + s * (1.0f / 3) * t2 - w * (1.0f / 12) * (t3 + s * 0.2f * t4));
-    mean = std::min(std::max(mean, 0.0f), highest);
+    const float t3 = (f - a) - 2 * t1, t4 = ((f - mid) - (mid - a)) - 4 * t2;
+    const float t5 = (y - z) - 4 * t3 - 3 * t1, t6 = ((y - mid) - (mid - z)) - 6 * t4 - 9 * t2;
+    const float s = 1 - 2 * g, bend = g * (1 - g), w3 = (2 + bend) * (1.0f / 12),
+                w5 = (6 + bend) * (1.0f / 30);
+    const float above =
+        t1 + s * (1.0f / 3) * t2 - w3 * (t3 + s * 0.2f * t4 - w5 * (t5 + s * (1.0f / 7) * t6));
     donor[k] = flow * mid;
-    extra[k] = flow * (mean - mid);
+    extra[k] = flow * (0.25f * (1 - g) * above);
   }
 }
 
@@ -146,7 +148,14 @@ void patchFaces(const SweepJob& job, int j, int first, int last, std::ptrdiff_t 
     }
     const float l1 = r[i - d], h1 = r[i];
     float mean, mid;
-    if (flow > 0) {
+    if (face->five) {
+      const bool up = flow > 0;
+      const float* from = up ? r + i - d : r + i;
+      const std::ptrdiff_t on = up ? d : -d;
+      mid = *from;
+      mean = sweptMean5(from[-2 * on], from[-on], mid, from[on], from[2 * on],
+                        std::min(std::fabs(flow) / (up ? vLow : vHigh)[i - first], 1.0f));
+    } else if (flow > 0) {
       mid = l1;
       mean = sweptMean3(face->behindLow ? r[i - 2 * d] : l1, l1, h1, std::min(flow / vLow[i - first], 1.0f));
     } else {
@@ -266,7 +275,7 @@ SweepResult Sweeper::runX(const SweepJob& job, ThreadPool& pool) {
             *flux = fluxRow.at0();
       const float* v = job.volume.row(first - 2, n + 4, j, volumeRow.at0() - 2) + 2;  // of cell `first`
       // Faces first - 1 .. last + 1, cells first - 1 .. last, final fluxes first .. last.
-      fluxes(n + 3, c + first - 1, r + first - 1, v - 2, v - 1, 1, job.highest, donor - 1, extra - 1);
+      fluxes(n + 3, c + first - 1, r + first - 1, v - 2, v - 1, 1, donor - 1, extra - 1);
       patchFaces(job, j, first - 1, last + 2, 1, v - 2, v - 1, extra - 1);
       if (!job.periodic && s == 0) cleanInflow(c[0], true, donor[0], extra[0]);
       if (!job.periodic && s == strips - 1) cleanInflow(c[nx], false, donor[n], extra[n]);
@@ -327,7 +336,9 @@ SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
       findVolume(j);
       float *donor = ring(donorRing, j), *extra = ring(extraRing, j);
       const float* c = job.courant->row(j) + first;
-      fluxes(n, c, job.value->row(j) + first, volumeAt(j - 1), volumeAt(j), d, job.highest, donor, extra);
+      // A face beyond a periodic side is one within, for which the margins are wide enough.
+      const int within = !job.periodic ? j : j < 0 ? j + ny : j > ny ? j - ny : j;
+      fluxes(n, c, job.value->row(within) + first, volumeAt(j - 1), volumeAt(j), d, donor, extra);
       patchFaces(job, j, first, last, d, volumeAt(j - 1), volumeAt(j), extra);
       if (!job.periodic && (j == 0 || j == ny))
         for (int k = 0; k < n; ++k) cleanInflow(c[k], j == 0, donor[k], extra[k]);

@@ -1,6 +1,6 @@
 // One directional sweep of a conserved quantity over the grid: mass and volume through each face, the value
-// of the carried mass from a single-step semi-Lagrangian reconstruction of 5th order (the mean, over the
-// swept part of the upwind cell, of the polynomial that has the right means in five cells), and flux
+// of the carried mass from a single-step semi-Lagrangian reconstruction of 7th order (the mean, over the
+// swept part of the upwind cell, of the polynomial that has the right means in seven cells), and flux
 // correction between the donor flux and this one so that values stay in [0, highest] (Zalesak 1979, with
 // global bounds).
 //
@@ -9,7 +9,7 @@
 // that no cell is overdrawn.
 //
 // The caller guarantees that at most 95% of a cell's volume leaves it in one sweep. Faces near cut cells come
-// as a list with a 3rd-order stencil, or the donor flux alone; merged cells share one value, see
+// as a list with a stencil of 5th or 3rd order, or the donor flux alone; merged cells share one value, see
 // smoke_merge.h.
 #pragma once
 #include <algorithm>
@@ -37,9 +37,10 @@ struct RowList {
   const Item* end(int j) const { return items.data() + start[j + 2]; }
 };
 
-/// A face whose 5th-order stencil meets a cut cell or a face that is not open.
+/// A face whose 7th-order stencil meets a cut cell or a face that is not open.
 struct IrregularFace {
   int i = 0, j = 0;
+  bool five = false;                           // the 5th-order stencil does not; else:
   bool donor = true;                           // no correction at all: it touches a merged or closed cell
   bool behindLow = false, behindHigh = false;  // the cell behind the low (high) cell can be used
 };
@@ -140,6 +141,14 @@ class Sweeper {
   std::vector<double> low_, high_;  // by row or by tile
   std::vector<float> top_;
 };
+
+/// Mean over the swept part g of the cell with mean `c`, from the 5th-order polynomial through the means a to
+/// e; e lies downwind.
+inline float sweptMean5(float a, float b, float c, float d, float e, float g) {
+  const float t1 = d - b, t2 = (d - c) - (c - b), t3 = (e - a) - 2 * t1, t4 = ((e - c) - (c - a)) - 4 * t2;
+  const float s = 1 - 2 * g, w = (2 - g) * (1 + g);
+  return c + 0.25f * (1 - g) * (t1 + s * (1.0f / 3) * t2 - w * (1.0f / 12) * (t3 + s * 0.2f * t4));
+}
 
 /// Mean over the swept part g of the cell with mean `c`, from the 3rd-order polynomial through the means b,
 /// c, d; d lies downwind.
