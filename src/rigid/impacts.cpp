@@ -243,13 +243,15 @@ void Impacts::begin(const std::vector<char>& flying) {
 }
 
 void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
-                  std::vector<Motion>& way) {
+                  std::vector<Motion>& way, bool again) {
   gravity_ = gravity;
   count_ = 0;
   const int n = static_cast<int>(contacts.size());
   heap_.clear();
   stamps_.assign(n, 0);
-  for (int k = 0; k < n; ++k) schedule(bodies, way, contacts, k, h, least);
+  for (int k = 0; k < n; ++k)
+    if (!again || wasStruck(contacts[k]->a) || wasStruck(contacts[k]->b))
+      schedule(bodies, way, contacts, k, h, least);
   if (heap_.empty()) return;
 
   firstAt_.assign(bodies.count(), -1);

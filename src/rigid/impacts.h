@@ -21,9 +21,10 @@ class Impacts {
   /// Before the first run of a sub-step. `flying`, by body: nothing pressed on it in the last one.
   void begin(const std::vector<char>& flying);
   /// `contacts`: those that may bounce. Slower approaches than `least` (m/s) are left to the contact solver.
-  /// Adds what the impacts change of the bodies' ways to `way`.
+  /// Adds what the impacts change of the bodies' ways to `way`. In a further run of a sub-step only what has
+  /// been struck can have come upon something new.
   void run(Bodies& bodies, const std::vector<Contact*>& contacts, double h, Vec2 gravity, double least,
-           std::vector<Motion>& way);
+           std::vector<Motion>& way, bool again);
   /// By body: moment of its last impact within the sub-step.
   const std::vector<double>& moments() const { return struckAt_; }
   bool wasStruck(int body) const { return times_[body] > 0; }

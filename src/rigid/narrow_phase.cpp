@@ -13,6 +13,9 @@ namespace {
 // in a step (less if they bounce): the contact's normal and corners then still hold at its end.
 constexpr double kCalm = 0.25, kCalmTurning = 0.05, kCalmBouncing = 0.01;
 constexpr double kCalmTurn = 0.1;  // rad
+// ... and whether they bounce or not, while they move by less than what so many sub-steps of gravity make of
+// it: a bounce is hardly to be told from rest there.
+constexpr double kCalmSubSteps = 10;
 // A body may stray by this share of its width from the way expected of it.
 constexpr double kStray = 0.02;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
@@ -39,6 +42,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   const int count = bodies.count();
   h_ = dt / subSteps;
   elapsed_ = 0;
+  const double slow = kCalmSubSteps * h_ * length(gravity) * dt;
   expected_.resize(count);
   stirred_.assign(count, 0);
   for (int b = 0; b < count; ++b) {
@@ -63,7 +67,8 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
     const bool pushed =
         (!bodies.moves(a) && isMoving(bodies, a)) || (!bodies.moves(b) && isMoving(bodies, b));
-    if ((pushed && way > kReuse * thin) || way > (bounces ? kCalmBouncing : kCalm) * thin ||
+    if ((pushed && way > kReuse * thin) ||
+        way > (bounces ? std::clamp(slow, kCalmBouncing * thin, kCalm * thin) : kCalm * thin) ||
         (way > kCalmTurning * thin && turn > kCalmTurn)) {
       livelyPair_[k] = 1;
       makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
@@ -164,21 +169,38 @@ void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double 
 void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
                                       const std::vector<Motion>& struck,
                                       const std::vector<double>& struckAt) {
-  next_.clear();
   auto wasStruck = [&](int body) {
     const Motion& m = struck[body];
     return m.x != 0 || m.y != 0 || m.turn != 0;
   };
-  for (LivelyPair& pair : pairs_) {
+  // What was found holds while the two have not moved far against each other since.
+  auto isDue = [&](LivelyPair& pair) {
+    const int a = pair.key.a, b = pair.key.b;
+    const auto begin = lively_.begin() + pair.first, end = begin + pair.count;
+    if ((!wasStruck(a) && !wasStruck(b)) ||
+        std::any_of(begin, end, [](const Contact& c) { return c.struck; }))
+      return false;
+    const double way = relativeSpeed(bodies, a, b) * h;
+    auto reach = [&](int body) {
+      return length(struck[body].linear()) + std::abs(struck[body].turn) * bodies.extent[body].turningReach;
+    };
+    pair.swept = way > kSwept * thinner(bodies, a, b);
+    pair.clear -= way + reach(a) + reach(b);
+    return pair.swept || pair.clear < 0;
+  };
+  due_.clear();
+  for (LivelyPair& pair : pairs_) due_.push_back(isDue(pair));
+  if (std::find(due_.begin(), due_.end(), 1) == due_.end()) return;
+  next_.clear();
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    LivelyPair& pair = pairs_[k];
     const int a = pair.key.a, b = pair.key.b;
     const auto begin = lively_.begin() + pair.first, end = begin + pair.count;
     const int first = static_cast<int>(next_.size());
-    if ((!wasStruck(a) && !wasStruck(b)) ||
-        std::any_of(begin, end, [](const Contact& c) { return c.struck; })) {
+    if (!due_[k]) {
       next_.insert(next_.end(), begin, end);
     } else {
       const double thin = thinner(bodies, a, b), way = relativeSpeed(bodies, a, b) * h;
-      pair.swept = way > kSwept * thin;
       pair.clear = 0;
       const double margin = pair.swept ? way : way + kNear * thin;
       const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());

@@ -69,7 +69,7 @@ class NarrowPhase {
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
   std::vector<Expected> expected_;
-  std::vector<char> stirred_;
+  std::vector<char> stirred_, due_;
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs
   std::vector<int> calmFirst_;             // by pair: range in calm_
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in

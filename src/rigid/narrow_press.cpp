@@ -10,7 +10,7 @@ namespace smokebox {
 namespace {
 // What overlaps by more than this share of the thinner one's width, and goes on closing in faster than that
 // (m/s) against all impulses, is crushed.
-constexpr double kCrushed = 0.03, kCrushSpeed = 0.2;
+constexpr double kCrushed = 0.01, kCrushSpeed = 0.2;
 }  // namespace
 
 void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {

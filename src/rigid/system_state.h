@@ -9,6 +9,7 @@
 #include "rigid/impacts.h"
 #include "rigid/joint_set.h"
 #include "rigid/narrow_phase.h"
+#include "rigid/press.h"
 #include "rigid/spring_set.h"
 
 namespace smokebox {
@@ -93,6 +94,7 @@ struct RigidSystem::State {
   std::vector<Contact*> bouncers;
   ConjugateSweeps conjugate;
   Impacts impact;
+  Press press;
   SpringSet springs;
   JointSet joints;
 

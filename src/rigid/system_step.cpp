@@ -231,7 +231,7 @@ void RigidSystem::State::impacts(double h) {
     // Who is struck must not have flown on through what it does not bounce off.
     for (Contact& contact : narrow.lively())
       if (contact.bounce <= 0 && meetsFast(contact, h)) bouncers.push_back(&contact);
-    impact.run(bodies, bouncers, h, gravity, least, struck);
+    impact.run(bodies, bouncers, h, gravity, least, struck, round > 0);
     if (impact.count() == 0) return;
     anyStruck = true;
     findWays(h, true);
@@ -409,6 +409,7 @@ void RigidSystem::State::solveContacts(double h) {
   }
   if (!joints.empty()) yieldTorn();
   narrow.yieldCrushed(bodies, start);
+  press.yield(bodies);
   if (mayBounce) findFlying(h);
   findWays(h, false);
   findCalmShare();
@@ -515,7 +516,9 @@ void RigidSystem::State::endStep(double step) {
   blocks.readBack(narrow.calm());
   giveBackSpare();
   contactTotals = {};
+  const bool pressing = press.begin(bodies);
   auto count = [&](const Contact& contact) {
+    if (pressing) press.add(bodies, contact);
     for (int k = 0; k < contact.count; ++k) {
       const ContactPoint& p = contact.points[k];
       const double gap = p.gap + gapMoved(bodies, contact, p);
@@ -526,6 +529,7 @@ void RigidSystem::State::endStep(double step) {
   for (std::size_t k = 0; k < narrow.calm().size(); ++k)
     if (!narrow.isDropped(static_cast<int>(k))) count(narrow.calm()[k]);
   for (const Contact& contact : narrow.lively()) count(contact);
+  if (pressing) press.end(bodies);
   collectTouches(narrow.calm());
   // Touches of one pair within the step become one.
   std::stable_sort(touches.begin(), touches.end(),

@@ -125,7 +125,7 @@ TEST(RigidJam, ClosingWallsCrushWhatIsBetweenThem) {
     speed = std::max(speed, fastest(world));
   }
   EXPECT_EQ(outside(world, 40, 20), 0);
-  EXPECT_LT(speed, 400);  // a wedge slips out like a melon seed
+  EXPECT_LT(speed, 50);  // the walls come at 5.2 m/s each: a wedge slips out like a melon seed
   for (int k = 0; k < 60; ++k) {
     world.system.moveTo(left, {18 - 13 * k / 60.0, 8}, 0);
     world.system.moveTo(right, {22 + 13 * k / 60.0, 8}, 0);
@@ -181,7 +181,7 @@ TEST(RigidJam, APocketOfAHundredThatCloses) {
       speed = std::max(speed, fastest(world));
       ASSERT_EQ(outside(world, 8, 40), 0) << k;
     }
-    EXPECT_LT(speed, 60);
+    EXPECT_LT(speed, 30);
     EXPECT_LT(world.system.totals().overlap, 2);
   }
   EXPECT_LT(times.worst(), 10 * times.median() + 1);
