@@ -40,14 +40,12 @@ Vec2 Impacts::acceleration(const Bodies& bodies, const Contact& contact) const {
 }
 
 Impacts::Approach Impacts::approach(const Bodies& bodies, const std::vector<Motion>& way,
-                                    const Contact& contact, const ContactPoint& point, double h,
-                                    double now) const {
-  const Motion &wa = way[contact.a], &wb = way[contact.b];
-  const double gap =
-      point.gap + gapMoved(bodies, contact, point) + dot(contact.normal, wb.linear() - wa.linear()) +
-      wb.turn * cross(point.armB, contact.normal) - wa.turn * cross(point.armA, contact.normal);
+                                    const Contact& contact, const ContactPoint& point, double h, double now,
+                                    double least) const {
   const double a = dot(acceleration(bodies, contact), contact.normal);
   const double v = partingSpeed(bodies, contact, point) - 0.5 * a * h;  // at the sub-step's start
+  if (v + std::min(a * h, 0.0) >= -least) return {};                    // never that fast
+  const double gap = point.gap + gapMoved(bodies, contact, point) + gapOf(way, contact, point);
   double t = now;
   if (gap + (v + 0.5 * a * now) * now > 0) {
     const double root = v * v - 2 * a * gap;
@@ -67,7 +65,7 @@ void Impacts::schedule(const Bodies& bodies, const std::vector<Motion>& way,
   double first = h;
   bool any = false;
   for (int p = 0; p < contact.count; ++p) {
-    const Approach at = approach(bodies, way, contact, contact.points[p], h, now);
+    const Approach at = approach(bodies, way, contact, contact.points[p], h, now, least);
     if (at.speed >= -least) continue;
     any = true;
     first = std::min(first, at.time);

@@ -39,11 +39,12 @@ class Impacts {
     }
   };
   struct Approach {
-    double time = 0, speed = 0;  // of the point: when it closes, how fast; speed >= 0: it does not
+    double time = 0,
+           speed = 0;  // of the point: when it closes, how fast; speed 0: not faster than what is left alone
   };
   double leastOf(const Contact& contact, double least) const;
   Approach approach(const Bodies& bodies, const std::vector<Motion>& way, const Contact& contact,
-                    const ContactPoint& point, double h, double now) const;
+                    const ContactPoint& point, double h, double now, double least) const;
   void schedule(const Bodies& bodies, const std::vector<Motion>& way, const std::vector<Contact*>& contacts,
                 int k, double h, double least);
   /// `now`: what was expected comes in, the moment of the impact itself goes out.

@@ -188,31 +188,37 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
     pair.clear -= way + reach(a) + reach(b);
     return pair.swept || pair.clear < 0;
   };
-  due_.clear();
-  for (LivelyPair& pair : pairs_) due_.push_back(isDue(pair));
-  if (std::find(due_.begin(), due_.end(), 1) == due_.end()) return;
-  next_.clear();
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    LivelyPair& pair = pairs_[k];
+  for (LivelyPair& pair : pairs_) {
+    if (!isDue(pair)) continue;
     const int a = pair.key.a, b = pair.key.b;
-    const auto begin = lively_.begin() + pair.first, end = begin + pair.count;
-    const int first = static_cast<int>(next_.size());
-    if (!due_[k]) {
-      next_.insert(next_.end(), begin, end);
-    } else {
-      const double thin = thinner(bodies, a, b), way = relativeSpeed(bodies, a, b) * h;
-      pair.clear = 0;
-      const double margin = pair.swept ? way : way + kNear * thin;
-      const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());
-      if (clearance(bodies, pair.key, broad.shiftOf(pair.key), reach + way) <= reach + way)
-        finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept,
-                     lively_.data() + pair.first, pair.count, next_,
-                     {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
-    }
-    pair.first = first;
-    pair.count = static_cast<int>(next_.size()) - first;
+    const double thin = thinner(bodies, a, b), way = relativeSpeed(bodies, a, b) * h;
+    pair.clear = 0;
+    const double margin = pair.swept ? way : way + kNear * thin;
+    const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());
+    next_.clear();
+    if (clearance(bodies, pair.key, broad.shiftOf(pair.key), reach + way) <= reach + way)
+      finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept,
+                   lively_.data() + pair.first, pair.count, next_,
+                   {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
+    replace(pair);
   }
-  lively_.swap(next_);
+}
+
+/// Puts what is in next_ into the place of a pair's contacts, or behind all others; places that are left over
+/// have contacts without a point.
+void NarrowPhase::replace(LivelyPair& pair) {
+  const int count = static_cast<int>(next_.size());
+  for (int k = pair.first; k < pair.first + pair.count; ++k) {
+    lively_[k].count = 0;
+    lively_[k].total = lively_[k].bounce = 0;
+  }
+  if (count <= pair.count) {
+    std::copy(next_.begin(), next_.end(), lively_.begin() + pair.first);
+  } else {
+    pair.first = static_cast<int>(lively_.size());
+    lively_.insert(lively_.end(), next_.begin(), next_.end());
+  }
+  pair.count = count;
 }
 
 bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,

@@ -63,13 +63,14 @@ class NarrowPhase {
     double room = 0;  // how far its points may be from where that takes them
   };
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
+  void replace(LivelyPair& pair);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
 
   std::vector<Contact> calm_, lively_, next_, memory_;
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
   std::vector<Expected> expected_;
-  std::vector<char> stirred_, due_;
+  std::vector<char> stirred_;
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs
   std::vector<int> calmFirst_;             // by pair: range in calm_
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in

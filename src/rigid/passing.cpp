@@ -93,6 +93,13 @@ bool Passing::stopPair(const Bodies& bodies, const std::vector<Motion>& way, con
   const int a = key.a, b = key.b;
   const BodyShape &sa = *bodies.def[a].shape, &sb = *bodies.def[b].shape;
   const double thin = std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
+  if (stops_[a].share >= 1 && stops_[b].share >= 1) {
+    const Motion &wa = way[a], &wb = way[b];
+    const double most = length(wa.linear() - wb.linear()) +
+                        std::abs(wa.turn) * bodies.extent[a].turningReach +
+                        std::abs(wb.turn) * bodies.extent[b].turningReach;
+    if (most <= kSwept * thin) return false;
+  }
   // Until the first of the two waits, until the other one does, and then.
   double ends[3] = {stops_[a].share, stops_[b].share, 1};
   if (ends[0] > ends[1]) std::swap(ends[0], ends[1]);
