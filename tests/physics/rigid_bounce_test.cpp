@@ -149,9 +149,9 @@ TEST(RigidBounce, FreePairsKeepEnergyMomentumAndAngularMomentum) {
         std::max(worstAngular, std::abs(after.angularMomentum - before.angularMomentum) / (50 * scale));
   }
   EXPECT_GT(collided, 90);
-  EXPECT_LT(worstEnergy, 1e-6);
+  EXPECT_LT(worstEnergy, 1e-12);
   EXPECT_LT(worstMomentum, 1e-12);
-  EXPECT_LT(worstAngular, 1e-10);
+  EXPECT_LT(worstAngular, 1e-12);
   RecordProperty("energy", std::to_string(worstEnergy * 1e12) + "e-12");
   RecordProperty("angular", std::to_string(worstAngular * 1e12) + "e-12");
 }
