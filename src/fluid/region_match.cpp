@@ -7,6 +7,7 @@ namespace smokebox {
 namespace {
 
 constexpr double kLeastShare = 0.5;
+constexpr double kFine = 1 << 24;  // sums of whole multiples of 1 / kFine have no order
 
 void countCells(const SmokeCells& cells, const RegionMap& map, std::vector<long>& size) {
   size.assign(map.count, 0);
@@ -38,13 +39,14 @@ void RegionMatch::findShifts(const SmokeCells& cells, const std::vector<int>& cu
     Shift& s = shifts_[region];
     for (int face = 0; face < 4; ++face) {
       const double closed = 1 - cells.atFace(b.openX, b.openY, c, face);
-      (face < 2 ? s.x : s.y) += closed * scale * cells.atFace(b.wallU, b.wallV, c, face);
-      (face < 2 ? s.weightX : s.weightY) += closed;
+      (face < 2 ? s.x : s.y) +=
+          std::nearbyint(kFine * closed * scale * cells.atFace(b.wallU, b.wallV, c, face));
+      (face < 2 ? s.weightX : s.weightY) += std::nearbyint(kFine * closed);
     }
   }
   for (Shift& s : shifts_) {
-    s.x = s.weightX > 0 ? std::floor(s.x / s.weightX + 0.5) : 0;
-    s.y = s.weightY > 0 ? std::floor(s.y / s.weightY + 0.5) : 0;
+    s.x = s.weightX > 0 ? std::round(s.x / s.weightX) : 0;
+    s.y = s.weightY > 0 ? std::round(s.y / s.weightY) : 0;
   }
 }
 

@@ -1,8 +1,10 @@
 #include "fluid/smoke.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "fluid/mirror_search.h"
 #include "fluid/smoke_spread.h"
 #include "fluid/smoke_volumes.h"
 #include "fluid/sweep.h"
@@ -59,6 +61,7 @@ struct Smoke::Impl {
   Activity activeOut, anyActive;
   std::vector<Trapped> trapped;
   std::vector<float> clusterMass, clusterVolume;
+  std::vector<float> amounts;  // scratch
   double cellArea;
   bool yFirst = false;
 
@@ -134,26 +137,45 @@ void Smoke::Impl::makeRoom(int channel, float highest) {
   });
 }
 
-// What goes from cell to cell.
+// What goes from cell to cell. Amounts of a group are found before any of them moves. Where several leave a
+// cell nothing, what does not divide by them is rounded half to even.
 void Smoke::Impl::move(int channel, const std::vector<SmokeTransfer>& transfers) {
   Channel& c = channels[channel];
   const SmokeCells& cells = volumes.cells();
   const Quantum q = c.quantum;
-  for (const SmokeTransfer& t : transfers) {
-    float& from = c.mass(cells.i(t.from), cells.j(t.from));
-    if (!(from > 0)) continue;
-    const float moved =
-        t.share >= 1 ? from : std::min(from, std::floor(from * t.share * q.inverse + 0.5f) * q.size);
-    if (!(moved > 0)) continue;
-    from -= moved;
-    if (t.to < 0) {
-      const int region = volumes.regionsBefore().at(cells.i(t.from), cells.j(t.from));
-      trapped.push_back(
-          {channel, t.from, moved, volumes.match().apart() ? volumes.match().heir(region) : -1});
-      continue;
+  const auto amount = [&](const SmokeTransfer& t) {
+    const float from = c.mass(cells.i(t.from), cells.j(t.from));
+    if (!(from > 0)) return 0.0f;
+    const auto drawing = static_cast<float>(t.drawing);
+    if (t.all) return t.drawing == 1 ? from : std::nearbyint(from / drawing * q.inverse) * q.size;
+    const float most = t.drawing == 1 ? from : std::floor(from / drawing * q.inverse) * q.size;
+    if (t.share >= 1) return most;
+    return std::min(most, std::floor(from * t.share * q.inverse + 0.5f) * q.size);
+  };
+  for (std::size_t begin = 0, end = 0; begin < transfers.size(); begin = end) {
+    amounts.clear();
+    do amounts.push_back(amount(transfers[end]));
+    while (transfers[end++].grouped);
+    for (std::size_t k = begin; k < end; ++k) {
+      const SmokeTransfer& t = transfers[k];
+      const float m = amounts[k - begin];
+      if (!(m > 0)) continue;
+      c.mass(cells.i(t.from), cells.j(t.from)) -= m;
+      if (t.to < 0) {
+        const int region = volumes.regionsBefore().at(cells.i(t.from), cells.j(t.from));
+        trapped.push_back({channel, t.from, m, volumes.match().apart() ? volumes.match().heir(region) : -1});
+        continue;
+      }
+      c.mass(cells.i(t.to), cells.j(t.to)) += m;
+      touch(c, t.to);
     }
-    c.mass(cells.i(t.to), cells.j(t.to)) += moved;
-    touch(c, t.to);
+    for (std::size_t k = begin; k < end; ++k) {
+      const SmokeTransfer& t = transfers[k];
+      if (!t.all || t.drawing == 1) continue;
+      float& rest = c.mass(cells.i(t.from), cells.j(t.from));
+      c.rounded += rest;
+      rest = 0;
+    }
   }
 }
 
@@ -296,7 +318,8 @@ void Smoke::Impl::fillMargins(Channel& c, Axis axis) {
   }
 }
 
-// Shares the mass of each cluster out among its cells by their open area, as its volume has been.
+// Shares the mass of each cluster out among its cells by their open area, as its volume has been. What rounding
+// leaves goes to the largest; where that has images in the cluster, they share it, half to even.
 void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
   const SmokeCells& cells = volumes.cells();
   const CellClusters& clusters = volumes.clusters();
@@ -311,6 +334,8 @@ void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
       if (b.volume(i, j) > b.volume(cells.i(largest), cells.j(largest))) largest = *cell;
     }
     const double value = m / std::max(volumes.clusterCarried(k), 1e-6);
+    const Images images = imagesOf(cells, largest);
+    unsigned sharers = 1;  // bits of images that are other cells, as large
     double rest = m;
     for (const int* cell = clusters.begin(k); cell != clusters.end(k); ++cell) {
       const int i = cells.i(*cell), j = cells.j(*cell);
@@ -319,8 +344,16 @@ void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
       c.mass(i, j) = static_cast<float>(part);
       c.value(i, j) = static_cast<float>(value);
       if (m > 0) touch(c, *cell);
+      for (int g = 1; g < 4; ++g)
+        if (images[g] == *cell && sharing(images, sharers, g) == 0 &&
+            b.volume(i, j) == b.volume(cells.i(largest), cells.j(largest)))
+          sharers |= 1u << g;
     }
-    c.mass(cells.i(largest), cells.j(largest)) += static_cast<float>(rest);
+    const int count = std::popcount(sharers);
+    const double each = count == 1 ? rest : std::nearbyint(rest / count * q.inverse) * q.size;
+    for (int g = 0; g < 4; ++g)
+      if (sharers >> g & 1) c.mass(cells.i(images[g]), cells.j(images[g])) += static_cast<float>(each);
+    c.rounded += rest - count * each;
     c.highest = std::max(c.highest, static_cast<float>(value));
   }
 }

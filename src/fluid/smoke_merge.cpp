@@ -12,23 +12,25 @@ constexpr float kLeastLeft = 0.02f;  // of a volume that has to be there at the 
 constexpr int kMergeRounds = 4;
 constexpr int kReduceRounds = 40;
 
-// What flows through the outer faces of some cells.
+// What flows through the outer faces of some cells. In float64, where the order of the cells, which is not
+// the mirror image's, is all one.
 struct Flow {
-  float volume = 0, outX = 0, outY = 0, in = 0, netX = 0, netY = 0;
+  double volume = 0, outX = 0, outY = 0, in = 0, netX = 0, netY = 0;
 
-  float after() const { return volume - netX - netY; }
+  double after() const { return volume - netX - netY; }
   // Into how many parts the step has to be cut; grows without limit as the volume vanishes.
   float parts() const {
-    const float least = std::max(std::min(volume, after()), 1e-6f);
-    return std::max(outX / kMostOut + std::max(netY, 0.0f), outY / kMostOut + std::max(netX, 0.0f)) / least;
+    const double least = std::max(std::min(volume, after()), 1e-6);
+    return static_cast<float>(
+        std::max(outX / kMostOut + std::max(netY, 0.0), outY / kMostOut + std::max(netX, 0.0)) / least);
   }
   bool empties() const { return after() < kLeastLeft * volume && outX + outY > 0; }
 };
 }  // namespace
 
 std::size_t CellClusters::bytes() const {
-  return (link_.capacity() + cluster_.capacity() + nodes_.capacity() + members_.capacity() +
-          first_.capacity() + linked_.capacity()) *
+  return orbits_.bytes() + (link_.capacity() + cluster_.capacity() + nodes_.capacity() + members_.capacity() +
+          first_.capacity() + linked_.capacity() + roots_.capacity()) *
              sizeof(int) +
          watched_.capacity() + (rootsX_.items.capacity() + rootsY_.items.capacity()) * sizeof(ClusterRoot);
 }
@@ -39,21 +41,28 @@ int CellClusters::root(int cell) const {
 }
 
 void CellClusters::clear(const SmokeCells& cells) {
-  for (int c : members_) cluster_[c] = -1;
-  for (int c : linked_) link_[c] = -1;
+  for (int c : members_) {
+    cluster_[c] = -1;
+    link_[c] = kNone;
+  }
   members_.clear();
   linked_.clear();
   first_.assign(1, 0);
   listRoots(cells);
 }
 
-// Links a cell (the root of its cluster, if it has one) to the neighbour behind its largest open face.
-bool CellClusters::link(const SmokeCells& cells, const Boundary& boundary, const Field& start, int cell) {
+// The neighbour behind the largest open face of a cell (the root of its cluster, if it has one) that is none
+// of its own cluster, nor of those of the cells `but`; of two that are alike the one that its image would
+// choose there. -1: none.
+int CellClusters::partner(const SmokeCells& cells, const Boundary& boundary, const Field& start, int cell,
+                          int image, const Images& but) const {
   int best = -1;
   float bestOpen = 0, bestVolume = 0;
-  for (int face = 0; face < 4; ++face) {
-    const int next = cells.neighbour(cell, face);
-    if (next < 0 || root(next) == cell) continue;
+  for (int k = 0; k < 4; ++k) {
+    const int face = imageOfFace(k, image), next = cells.neighbour(cell, face);
+    if (next < 0) continue;
+    const int to = root(next);
+    if (to == cell || std::find(but.begin(), but.end(), to) != but.end()) continue;
     const float open = cells.atFace(boundary.openX, boundary.openY, cell, face);
     const float volume = start(cells.i(next), cells.j(next));
     if (open > bestOpen || (open > 0 && open == bestOpen && volume > bestVolume)) {
@@ -62,10 +71,47 @@ bool CellClusters::link(const SmokeCells& cells, const Boundary& boundary, const
       bestVolume = volume;
     }
   }
-  if (best < 0) return false;
-  link_[cell] = best;
+  return best;
+}
+
+void CellClusters::join(int cell, int other) {
+  if (root(other) == cell) return;
+  link_[cell] = other;
   linked_.push_back(cell);
-  return true;
+}
+
+// Links cells, images of each other and each the root of its cluster, to their partners. They do not link to
+// each other, unless there is nothing else: then, and where a cell on an axis has a partner on either side,
+// the root is one of those merged.
+void CellClusters::link(const SmokeCells& cells, const Boundary& boundary, const Field& start,
+                        const Images& images, unsigned which) {
+  Images roots = {-1, -1, -1, -1}, best = {-1, -1, -1, -1};
+  for (int g = 0; g < 4; ++g)
+    if ((which >> g & 1) && link_[images[g]] == kNone) roots[g] = images[g];
+  bool apart[4] = {};
+  for (int g = 0; g < 4; ++g) {
+    if (roots[g] < 0) continue;
+    best[g] = partner(cells, boundary, start, images[g], g, {-1, -1, -1, -1});
+    if (best[g] < 0 || std::find(roots.begin(), roots.end(), root(best[g])) == roots.end()) continue;
+    const int other = partner(cells, boundary, start, images[g], g, roots);
+    if (other >= 0)
+      best[g] = other;
+    else
+      apart[g] = true;
+  }
+  for (int g = 0; g < 4; ++g) {
+    if (best[g] < 0) continue;
+    const int c = images[g];
+    if (link_[c] == kNone) {
+      join(c, best[g]);
+      if (apart[g] && link_[root(c)] == kNone) link_[root(c)] = kMerged;
+    } else if (root(best[g]) != root(c)) {  // on an axis, and linked to the other side
+      const int far = root(best[g]), near = root(c);
+      link_[near] = kMerged;
+      link_[far] = c;
+      linked_.push_back(far);
+    }
+  }
 }
 
 // Lists the cells of each cluster, its root first.
@@ -108,7 +154,7 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
                         Field& courantY, int parts, int mostParts) {
   const std::size_t count = static_cast<std::size_t>(cells.nx) * cells.ny;
   if (link_.size() != count) {
-    link_.assign(count, -1);
+    link_.assign(count, kNone);
     cluster_.assign(count, -1);
   }
   clear(cells);
@@ -117,11 +163,14 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
   nodes_ = nodes;
   for (int c : nodes_) watched_[c] = 1;
   auto volumeOf = [&](int c) { return start(cells.i(c), cells.j(c)); };
-  for (int c : cut) {
+  const auto small = [&](int c) {
     const int i = cells.i(c), j = cells.j(c);
-    if (boundary.volume(i, j) > 0 && std::min({before(i, j), boundary.volume(i, j), start(i, j)}) < kSmall)
-      link(cells, boundary, start, c);
-  }
+    return boundary.volume(i, j) > 0 && std::min({before(i, j), boundary.volume(i, j), start(i, j)}) < kSmall;
+  };
+  const auto linkAll = [&](const Images& images, unsigned which) {
+    link(cells, boundary, start, images, which);
+  };
+  orbits_.each(cells, cut, small, linkAll);
   group();
 
   auto flowOfCell = [&](int c, Flow& flow) {
@@ -129,10 +178,10 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
     for (int face = 0; face < 4; ++face) {
       const int next = cells.neighbour(c, face);
       if (next >= 0 && cluster_[c] >= 0 && cluster_[next] == cluster_[c]) continue;
-      const float out = outwards(face) * cells.atFace(courantX, courantY, c, face);
-      (face < 2 ? flow.outX : flow.outY) += std::max(out, 0.0f);
+      const double out = outwards(face) * cells.atFace(courantX, courantY, c, face);
+      (face < 2 ? flow.outX : flow.outY) += std::max(out, 0.0);
       (face < 2 ? flow.netX : flow.netY) += out;
-      flow.in += std::max(-out, 0.0f);
+      flow.in += std::max(-out, 0.0);
     }
   };
   auto flowOf = [&](int c) {  // c: a root or a cell by itself
@@ -147,11 +196,12 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
 
   for (int round = 0; round < kMergeRounds; ++round) {
     const std::size_t had = linked_.size();
-    for (int c : cut) {
-      if (!isNode(c)) continue;
+    const auto overdrawn = [&](int c) {
+      if (!isNode(c) || link_[c] == kMerged) return false;
       const Flow flow = flowOf(c);
-      if (flow.parts() > parts || flow.empties()) link(cells, boundary, start, c);
-    }
+      return flow.parts() > parts || flow.empties();
+    };
+    orbits_.each(cells, cut, overdrawn, linkAll);
     if (linked_.size() == had) break;
     group();
   }
@@ -182,25 +232,37 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
     else
       for (const int* m = begin(cluster_[c]); m != end(cluster_[c]); ++m) cell(*m);
   };
-  auto tame = [&](int c) {
+  auto factorOf = [&](int c) {
     const Flow flow = flowOf(c);
-    const float out = flow.outX + flow.outY;
-    if (out <= 0) return false;
-    float factor = 1;
+    const double out = flow.outX + flow.outY;
+    double factor = 1;
+    if (out <= 0) return 1.0f;
     if (flow.empties())
-      factor = std::max(0.0f, (1 - 2 * kLeastLeft) * flow.volume + flow.in) / out;
+      factor = std::max(0.0, (1 - 2 * kLeastLeft) * flow.volume + flow.in) / out;
     else if (flow.parts() > mostParts)
       factor = 0.9f * mostParts / flow.parts();
-    if (factor >= 1) return false;
-    reduce(c, flow.volume > 0 ? factor : 0.0f);
-    return true;
+    return factor >= 1 ? 1.0f : flow.volume > 0 ? static_cast<float>(factor) : 0.0f;
   };
   bool changed = true;
   for (int round = 0; round < kReduceRounds && changed; ++round) {
     changed = false;
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
-      if (isNode(nodes_[k])) changed |= tame(nodes_[k]);
-    for (int k = 0; k < this->count(); ++k) changed |= tame(*begin(k));
+    const auto tame = [&](const Images& images, unsigned which) {
+      Images unit = {-1, -1, -1, -1};  // each image's cluster, or itself
+      float factor[4] = {1, 1, 1, 1};
+      for (int g = 0; g < 4; ++g) {
+        if (!(which >> g & 1)) continue;
+        const int k = cluster_[images[g]], own = k < 0 ? images[g] : *begin(k);
+        if (std::find(unit.begin(), unit.end(), own) != unit.end()) continue;
+        unit[g] = own;
+        factor[g] = factorOf(own);
+      }
+      for (int g = 0; g < 4; ++g)
+        if (factor[g] < 1) reduce(unit[g], factor[g]), changed = true;
+    };
+    orbits_.each(cells, nodes_, isNode, tame);
+    roots_.clear();
+    for (int k = 0; k < this->count(); ++k) roots_.push_back(*begin(k));
+    orbits_.each(cells, roots_, [&](int c) { return cluster_[c] >= 0; }, tame);
   }
   listRoots(cells);
   if (changed) return 0;

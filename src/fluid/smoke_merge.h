@@ -1,10 +1,12 @@
 // Cells that are too small for the step are merged with the neighbour behind their largest open face: a
 // cluster shares one value during the sweeps. Merged are cells with less than a quarter of their area open,
-// and cut cells out of which more than 95% of the volume would flow in one sweep.
+// and cut cells out of which more than 95% of the volume would flow in one sweep. Mirror images are dealt with
+// at once and so make mirrored clusters.
 #pragma once
 #include <cstdint>
 #include <vector>
 
+#include "fluid/mirror_search.h"
 #include "fluid/smoke_cells.h"
 #include "fluid/sweep.h"
 
@@ -28,8 +30,8 @@ class CellClusters {
   /// Cells of cluster k; the first is the one with corrected fluxes, unless all are merged.
   const int* begin(int k) const { return members_.data() + first_[k]; }
   const int* end(int k) const { return members_.data() + first_[k + 1]; }
-  /// Whether the cell is merged into another one.
-  bool merged(int cell) const { return !link_.empty() && link_[cell] >= 0; }
+  /// Whether the cell is merged into another one, or with its own image.
+  bool merged(int cell) const { return !link_.empty() && link_[cell] != kNone; }
   /// Whether it belongs to a cluster at all.
   bool clustered(int cell) const { return !cluster_.empty() && cluster_[cell] >= 0; }
 
@@ -39,15 +41,22 @@ class CellClusters {
   std::size_t bytes() const;
 
  private:
+  static constexpr int kNone = -1, kMerged = -2;  // a root that is one among its images
+
   int root(int cell) const;
   void group();
-  bool link(const SmokeCells& cells, const Boundary& boundary, const Field& start, int cell);
+  int partner(const SmokeCells& cells, const Boundary& boundary, const Field& start, int cell, int image,
+              const Images& but) const;
+  void link(const SmokeCells& cells, const Boundary& boundary, const Field& start, const Images& images,
+            unsigned which);
+  void join(int cell, int other);
   void listRoots(const SmokeCells& cells);
 
+  MirrorOrbits orbits_;
   std::vector<int> link_, cluster_;    // by cell, -1 for none
   std::vector<std::uint8_t> watched_;  // by cell: is in nodes_
   std::vector<int> nodes_;             // cells to look after
-  std::vector<int> members_, first_{0}, linked_, placed_;
+  std::vector<int> members_, first_{0}, linked_, placed_, roots_;
   RowList<ClusterRoot> rootsX_, rootsY_;
   struct RootPlace {
     int j;

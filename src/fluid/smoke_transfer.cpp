@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "fluid/smoke_passed.h"
+
 namespace smokebox {
 namespace {
 constexpr float kTolerance = 1e-6f;
@@ -13,59 +15,27 @@ constexpr int kBarrenPart =
     4;  // of the cells that a wide search has seen: those that need no search of their own
 constexpr int kReachOfDeficit = 12;
 constexpr float kMostTaken = 0.95f;  // of what a cell carries
-constexpr int kWindow = 2;           // cells to either side in which two sides are told apart
 
 float volumeOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c) {
   return (*geometry.volume)(cells.i(c), cells.j(c));
-}
-
-float smallest(float a, float b, float c) { return std::min(a, std::min(b, c)); }
-
-float openOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c, int face) {
-  return cells.atFace(*geometry.openX, *geometry.openY, c, face);
 }
 
 int regionOf(const SmokeCells& cells, const SmokeGeometry& geometry, int c) {
   return geometry.regions ? geometry.regions->at(cells.i(c), cells.j(c)) : -1;
 }
 
-// Cells by their place in the window around one, of which some are never cut and so keep their side.
-struct Window {
-  static constexpr int kSize = 2 * kWindow + 1;
-  std::uint32_t reached = 0, anchors = 0;
+bool has(unsigned which, int image) { return which >> image & 1; }
 
-  void fill(const SmokeCells& cells, int from, const SmokeGeometry& through, const SmokeGeometry& before,
-            const SmokeGeometry& after) {
-    struct Place {
-      int cell, x, y;
-    };
-    Place queue[kSize * kSize] = {{from, kWindow, kWindow}};
-    int count = 1;
-    reached = bit(kWindow, kWindow);
-    for (int head = 0; head < count; ++head) {
-      const Place p = queue[head];
-      if (volumeOf(cells, before, p.cell) == 1 && volumeOf(cells, after, p.cell) == 1)
-        anchors |= bit(p.x, p.y);
-      for (int face = 0; face < 4; ++face) {
-        const int x = p.x + (face == 1) - (face == 0), y = p.y + (face == 3) - (face == 2);
-        if (x < 0 || y < 0 || x >= kSize || y >= kSize || (reached & bit(x, y))) continue;
-        const int next = cells.neighbour(p.cell, face);
-        if (next < 0 || !(openOf(cells, through, p.cell, face) > 0)) continue;
-        reached |= bit(x, y);
-        queue[count++] = {next, x, y};
-      }
-    }
-  }
-  static std::uint32_t bit(int x, int y) { return 1u << (y * kSize + x); }
-};
+/// The smaller of what a cell has to give and another can take, where as many share in either.
+float shared(float gives, int givers, float takes, int takers) {
+  return std::min(gives / static_cast<float>(givers), takes / static_cast<float>(takers));
+}
 }  // namespace
 
 std::size_t TransferPlan::bytes() const {
   return (handed_.capacity() + exchanged_.capacity()) * sizeof(SmokeTransfer) + passed_.capacity() +
-         (excess_.capacity() + content_.capacity()) * sizeof(float) +
-         (seen_.capacity() + cameFrom_.capacity() + barren_.capacity() + queue_.capacity() +
-          path_.capacity()) *
-             sizeof(int);
+         drawing_.capacity() + (excess_.capacity() + content_.capacity()) * sizeof(float) +
+         (barren_.capacity() + path_.capacity()) * sizeof(int) + search_.bytes() + orbits_.bytes();
 }
 
 void TransferPlan::clear() {
@@ -75,79 +45,86 @@ void TransferPlan::clear() {
 }
 
 void TransferPlan::reserve(const SmokeCells& cells) {
-  if (seen_.size() == cells.count()) return;
+  if (barren_.size() == cells.count()) return;
   excess_.assign(cells.count(), 0);
   content_.assign(cells.count(), 1);
   passed_.assign(cells.count(), 0);
-  seen_.assign(cells.count(), 0);
-  cameFrom_.assign(cells.count(), 0);
+  drawing_.assign(cells.count(), 0);
   barren_.assign(cells.count(), 0);
 }
 
-template <class Visit>
-void TransferPlan::search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most,
-                          Visit&& visit) {
-  queue_.assign(1, from);
-  seen_[from] = ++search_;
-  for (std::size_t head = 0; head < queue_.size() && static_cast<int>(queue_.size()) <= most; ++head) {
-    const int cell = queue_[head], i = cells.i(cell), j = cells.j(cell);
-    for (int face = 0; face < 4; ++face) {
-      if (geometry && !(SmokeCells::atFace(*geometry->openX, *geometry->openY, i, j, face) > 0)) continue;
-      const int next = cells.neighbour(i, j, face);
-      if (next < 0 || seen_[next] == search_) continue;
-      seen_[next] = search_;
-      cameFrom_[next] = cell;
-      queue_.push_back(next);
-      if (visit(next)) return;
-    }
-  }
+void TransferPlan::start(const SmokeCells& cells, const Images& from, unsigned which,
+                         const SmokeGeometry* through, int most) {
+  search_.start(cells, from, which, through ? through->openX : nullptr, through ? through->openY : nullptr,
+                most);
 }
 
-int TransferPlan::nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region) {
+int TransferPlan::nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region,
+                              int image) {
   reserve(cells);
   auto fits = [&](int c) {
     return volumeOf(cells, geometry, c) > 0 && (region < 0 || regionOf(cells, geometry, c) == region);
   };
   if (fits(from)) return from;
-  int found = -1;
-  search(cells, from, nullptr, kReachOfClosed, [&](int cell) {
-    if (fits(cell)) found = cell;
-    return found >= 0;
-  });
-  return found;
+  start(cells, {from, from, from, from}, 1u << image, nullptr, kReachOfClosed);
+  for (Images found; search_.next(found);)
+    if (fits(found[image])) return found[image];
+  return -1;
 }
 
-// Moves a volume and notes which share of the smoke goes with it.
-void TransferPlan::give(int from, int to, float volume, bool all) {
-  handed_.push_back({from, to, all ? 1.0f : std::min(1.0f, volume / content_[from])});
-  content_[from] -= volume;
-  excess_[from] -= volume;
-  if (to < 0) return;
-  content_[to] += volume;
-  excess_[to] += volume;
-}
-
-// Whether the part of a cell that counts as open has changed from one side of a thin wall to the other: the
-// cells that are never cut and that it is connected with near by are others now.
-bool TransferPlan::passed(const SmokeCells& cells, int c, const SmokeGeometry& before,
-                          const SmokeGeometry& after) {
-  bool was = false, is = false, both = false;
-  for (int face = 0; face < 4; ++face) {
-    const int next = cells.neighbour(c, face);
-    if (next < 0) continue;
-    const bool wasOpen = openOf(cells, before, c, face) > 0, isOpen = openOf(cells, after, c, face) > 0;
-    if (wasOpen && isOpen && volumeOf(cells, before, next) == 1 && volumeOf(cells, after, next) == 1)
-      return false;
-    was |= wasOpen;
-    is |= isOpen;
-    both |= wasOpen && isOpen;
+// Moves volumes at once. Those that are equal for mirror images are added in one order.
+void TransferPlan::shift(const Images& from, const Images& to, const Amounts& volume, unsigned which) {
+  int order[4] = {0, 1, 2, 3};
+  std::stable_sort(order, order + 4, [&](int a, int b) { return volume[a] > volume[b]; });
+  for (int g : order) {
+    if (!has(which, g)) continue;
+    content_[from[g]] -= volume[g];
+    excess_[from[g]] -= volume[g];
+    if (to[g] < 0) continue;
+    content_[to[g]] += volume[g];
+    excess_[to[g]] += volume[g];
   }
-  if (!was) return false;
-  if (!is) return true;  // shut in: whichever side it is on when it opens again
-  Window old, now;
-  old.fill(cells, c, before, before, after);
-  now.fill(cells, c, after, before, after);
-  return old.anchors && now.anchors ? (old.anchors & now.anchors) == 0 : !both;
+}
+
+// The transfers from `begin` on happen at once.
+void TransferPlan::endGroup(std::vector<SmokeTransfer>& transfers, std::size_t begin) {
+  if (transfers.size() - begin < 2) return;
+  for (std::size_t k = begin; k < transfers.size(); ++k) ++drawing_[transfers[k].from];
+  for (std::size_t k = begin; k < transfers.size(); ++k) {
+    transfers[k].drawing = drawing_[transfers[k].from];
+    transfers[k].grouped = k + 1 < transfers.size();
+  }
+  for (std::size_t k = begin; k < transfers.size(); ++k) drawing_[transfers[k].from] = 0;
+}
+
+// Moves volumes at once and notes which share of the smoke goes with each.
+void TransferPlan::give(const Images& from, const Images& to, const Amounts& volume, unsigned which) {
+  const std::size_t begin = handed_.size();
+  for (int g = 0; g < 4; ++g)
+    if (has(which, g)) handed_.push_back({from[g], to[g], std::min(1.0f, volume[g] / content_[from[g]])});
+  endGroup(handed_, begin);
+  shift(from, to, volume, which);
+}
+
+// What is left in cells, be it none, goes to the cells `to`; what is left of the smoke must not stay.
+void TransferPlan::giveRest(const Images& from, unsigned which, const Images& to) {
+  unsigned giving = 0;  // of images that are one cell those that have found another, or one
+  for (int g = 0; g < 4; ++g) {
+    if (!has(which, g)) continue;
+    bool other = false;
+    for (int k = 0; k < 4; ++k)
+      other |= k != g && has(which, k) && from[k] == from[g] && to[k] >= 0;
+    if (to[g] >= 0 || (!other && sharing(from, giving, g) == 0)) giving |= 1u << g;
+  }
+  Amounts rest = {};
+  const std::size_t begin = handed_.size();
+  for (int g = 0; g < 4; ++g) {
+    if (!has(giving, g)) continue;
+    rest[g] = std::max(content_[from[g]], 0.0f) / static_cast<float>(sharing(from, giving, g));
+    handed_.push_back({from[g], to[g], 1.0f, 1, true});
+  }
+  endGroup(handed_, begin);
+  shift(from, to, rest, giving);
 }
 
 void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut, const RegionMatch& match,
@@ -157,53 +134,23 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
   handed_.clear();
   drawnOn_.clear();
   for (int c : cut) {
-    float net = 0;
-    for (int face = 0; face < 4; ++face) net += outwards(face) * cells.atFace(courantX, courantY, c, face);
+    const float netX = cells.atFace(courantX, courantY, c, 1) - cells.atFace(courantX, courantY, c, 0),
+                netY = cells.atFace(courantX, courantY, c, 3) - cells.atFace(courantX, courantY, c, 2);
     content_[c] = volumeOf(cells, before, c) > 0 ? carried(cells.i(c), cells.j(c)) : 0.0f;
-    excess_[c] = content_[c] - net - volumeOf(cells, after, c);
+    excess_[c] = content_[c] - (netX + netY) - volumeOf(cells, after, c);
     const bool stays = volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) > 0;
     passed_[c] =
         stays &&
         ((match.apart() && !match.continues(regionOf(cells, before, c), regionOf(cells, after, c))) ||
-         passed(cells, c, before, after));
+         passedByWall(cells, c, before, after));
   }
 
-  for (int c : cut) {
-    const bool closes = volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) <= 0;
-    if (!closes && !passed_[c]) continue;
-    const int region = match.apart() ? regionOf(cells, before, c) : -1;
-    auto takes = [&](int other) {
-      return volumeOf(cells, after, other) > 0 && !passed_[other] &&
-             (region < 0 || match.continues(region, regionOf(cells, after, other)));
-    };
-    int nearest = -1;
-    for (int reach : kReachOfPairs) {
-      search(cells, c, &before, reach, [&](int other) {
-        if (!takes(other)) return false;
-        if (nearest < 0) nearest = other;
-        if (content_[c] <= kTolerance) return true;
-        const float moved = std::min(content_[c], -excess_[other]);
-        if (moved > kTolerance) give(c, other, moved, false);
-        return content_[c] <= kTolerance;
-      });
-      if (content_[c] <= kTolerance && nearest >= 0) break;
-    }
-    // Then whatever lies between, if it is told apart what is on which side.
-    for (const SmokeGeometry* through : {&before, static_cast<const SmokeGeometry*>(nullptr)}) {
-      if (nearest >= 0 || (!through && region < 0)) break;
-      search(cells, c, through, kReachOfClosed, [&](int other) {
-        if (takes(other)) nearest = other;
-        return nearest >= 0;
-      });
-    }
-    if (nearest < 0) {
-      const int heir = region < 0 ? -1 : match.heir(region);
-      if (passed_[c] && (region < 0 || match.continues(region, regionOf(cells, after, c)))) continue;
-      if (heir < 0) nearest = nearestOpen(cells, after, c, -1);  // of a region that has vanished
-    }
-    // The rest, be it none: what is left of the smoke must not stay.
-    give(c, nearest, std::max(content_[c], 0.0f), true);
-  }
+  const auto gives = [&](int c) {
+    return passed_[c] || (volumeOf(cells, before, c) > 0 && volumeOf(cells, after, c) <= 0);
+  };
+  orbits_.each(cells, cut, gives, [&](const Images& from, unsigned which) {
+    handOverFrom(cells, from, which, match, before, after);
+  });
 
   correctFlows(cells, cut, after, courantX, courantY);
 
@@ -226,15 +173,75 @@ void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut
   for (const SmokeTransfer& t : handed_) forget(t.to);
 }
 
-// Adds a flow along the path that the last search, which began at `from`, took to `to`.
-void TransferPlan::route(const SmokeCells& cells, int from, int to, float volume, Field& courantX,
+// All that a cell and its images hold goes to cells that lack it, the nearest first, and to the nearest.
+void TransferPlan::handOverFrom(const SmokeCells& cells, const Images& from, unsigned which,
+                                const RegionMatch& match, const SmokeGeometry& before,
+                                const SmokeGeometry& after) {
+  std::array<int, 4> region;
+  for (int g = 0; g < 4; ++g) region[g] = match.apart() ? regionOf(cells, before, from[g]) : -1;
+  const auto takes = [&](int g, int other) {
+    return volumeOf(cells, after, other) > 0 && !passed_[other] &&
+           (region[g] < 0 || match.continues(region[g], regionOf(cells, after, other)));
+  };
+  Images nearest = {-1, -1, -1, -1}, found;
+  const auto done = [&](int g) { return content_[from[g]] <= kTolerance && nearest[g] >= 0; };
+  for (int reach : kReachOfPairs) {
+    unsigned seeking = 0;
+    for (int g = 0; g < 4; ++g) seeking |= static_cast<unsigned>(has(which, g) && !done(g)) << g;
+    if (!seeking) break;
+    start(cells, from, seeking, &before, reach);
+    while (unsigned at = search_.next(found)) {
+      for (int g = 0; g < 4; ++g) {
+        if (!has(at, g)) continue;
+        if (!takes(g, found[g]))
+          at &= ~(1u << g);
+        else if (nearest[g] < 0)
+          nearest[g] = found[g];
+      }
+      Amounts moved = {};
+      unsigned moving = 0;
+      for (int g = 0; g < 4; ++g) {
+        if (!has(at, g) || content_[from[g]] <= kTolerance) continue;
+        moved[g] = shared(content_[from[g]], sharing(from, at, g), -excess_[found[g]], sharing(found, at, g));
+        moving |= static_cast<unsigned>(moved[g] > kTolerance) << g;
+      }
+      if (moving) give(from, found, moved, moving);
+      for (int g = 0; g < 4; ++g)
+        if (has(at, g) && done(g)) search_.stop(g);
+    }
+  }
+  // Then whatever lies between, if it is told apart what is on which side.
+  for (const SmokeGeometry* through : {&before, static_cast<const SmokeGeometry*>(nullptr)}) {
+    unsigned seeking = 0;
+    for (int g = 0; g < 4; ++g)
+      seeking |=
+          static_cast<unsigned>(has(which, g) && nearest[g] < 0 && (through || region[g] >= 0)) << g;
+    if (!seeking) continue;
+    start(cells, from, seeking, through, kReachOfClosed);
+    while (const unsigned at = search_.next(found))
+      for (int g = 0; g < 4; ++g)
+        if (has(at, g) && takes(g, found[g])) {
+          nearest[g] = found[g];
+          search_.stop(g);
+        }
+  }
+  for (int g = 0; g < 4; ++g) {
+    if (!has(which, g) || nearest[g] >= 0) continue;
+    const int c = from[g], heir = region[g] < 0 ? -1 : match.heir(region[g]);
+    if (passed_[c] && (region[g] < 0 || match.continues(region[g], regionOf(cells, after, c))))
+      which &= ~(1u << g);
+    else if (heir < 0)
+      nearest[g] = nearestOpen(cells, after, c, -1, g);  // of a region that has vanished
+  }
+  giveRest(from, which, nearest);
+}
+
+// Adds a flow along the path that an image's search, which began at `from`, took to `to`.
+void TransferPlan::route(const SmokeCells& cells, int image, int from, int to, float volume, Field& courantX,
                          Field& courantY) {
-  excess_[from] -= volume;
-  excess_[to] += volume;
   for (int cell = to; cell != from;) {
-    const int last = cameFrom_[cell], i = cells.i(last), j = cells.j(last);
-    int face = 0;
-    while (face < 3 && cells.neighbour(last, face) != cell) ++face;
+    const int face = search_.cameThrough(image, cell), last = search_.cellBefore(cells, image, cell),
+              i = cells.i(last), j = cells.j(last);
     float& flow = SmokeCells::atFace(courantX, courantY, i, j, face);
     flow += outwards(face) * volume;
     // The two copies of a periodic side's faces agree.
@@ -250,52 +257,98 @@ void TransferPlan::route(const SmokeCells& cells, int from, int to, float volume
 // with less than half of their volume draw on others.
 void TransferPlan::correctFlows(const SmokeCells& cells, const std::vector<int>& cut,
                                 const SmokeGeometry& after, Field& courantX, Field& courantY) {
-  ++barrenNow_;
-  for (const int reach : kReachOfFlows)
-    for (int c : cut) {
-      if (volumeOf(cells, after, c) <= 0 || excess_[c] <= kTolerance || barren_[c] == barrenNow_) continue;
-      search(cells, c, &after, reach, [&](int other) {
-        const float moved = std::min(excess_[c], -excess_[other]);
-        if (moved > kTolerance && volumeOf(cells, after, other) > 0)
-          route(cells, c, other, moved, courantX, courantY);
-        return excess_[c] <= kTolerance;
-      });
-      // Where a wide search was in vain, the cells around need not try.
-      if (excess_[c] <= kTolerance || reach != kReachOfFlows[1]) continue;
-      for (std::size_t k = 0; k < queue_.size() / kBarrenPart; ++k) barren_[queue_[k]] = barrenNow_;
+  const auto open = [&](int c) { return volumeOf(cells, after, c); };
+  Images found;
+  // Flows of the images at once; the larger first, so that those of mirror images add up in one order.
+  const auto routeAll = [&](const Images& from, const Amounts& moved, unsigned which, float sign) {
+    int order[4] = {0, 1, 2, 3};
+    std::stable_sort(order, order + 4, [&](int a, int b) { return moved[a] > moved[b]; });
+    for (int g : order) {
+      if (!has(which, g)) continue;
+      route(cells, g, from[g], found[g], sign * moved[g], courantX, courantY);
+      excess_[from[g]] -= sign * moved[g];
+      excess_[found[g]] += sign * moved[g];
     }
-  for (int c : cut) {
-    const float open = volumeOf(cells, after, c);
-    float lacks = -0.5f * open - excess_[c];
-    if (open <= 0 || lacks <= kTolerance) continue;
-    search(cells, c, &after, kReachOfDeficit, [&](int other) {
-      const float has = volumeOf(cells, after, other);
-      const float moved = std::min(lacks, excess_[other] + 0.5f * has);
-      if (has <= 0 || moved <= kTolerance) return false;
-      route(cells, c, other, -moved, courantX, courantY);
-      drawnOn_.push_back(other);
-      lacks -= moved;
-      return lacks <= kTolerance;
+  };
+  ++barrenNow_;
+  for (const int reach : kReachOfFlows) {
+    const auto wants = [&](int c) {
+      return excess_[c] > kTolerance && open(c) > 0 && barren_[c] != barrenNow_;
+    };
+    orbits_.each(cells, cut, wants, [&](const Images& from, unsigned which) {
+      start(cells, from, which, &after, reach);
+      while (const unsigned at = search_.next(found)) {
+        Amounts moved = {};
+        unsigned moving = 0;
+        for (int g = 0; g < 4; ++g) {
+          if (!has(at, g)) continue;
+          moved[g] =
+              shared(excess_[from[g]], sharing(from, at, g), -excess_[found[g]], sharing(found, at, g));
+          moving |= static_cast<unsigned>(moved[g] > kTolerance && open(found[g]) > 0) << g;
+        }
+        if (!moving) continue;
+        routeAll(from, moved, moving, 1);
+        for (int g = 0; g < 4; ++g)
+          if (has(which, g) && excess_[from[g]] <= kTolerance) search_.stop(g);
+      }
+      // Where a wide search was in vain, the cells around need not try.
+      for (int g = 0; g < 4; ++g) {
+        if (!has(which, g) || excess_[from[g]] <= kTolerance || reach != kReachOfFlows[1]) continue;
+        const std::vector<int>& seen = search_.queue(g);
+        for (std::size_t k = 0; k < seen.size() / kBarrenPart; ++k) barren_[seen[k]] = barrenNow_;
+      }
     });
   }
+  const auto lacks = [&](int c) { return -0.5f * open(c) - excess_[c]; };
+  const auto wants = [&](int c) { return excess_[c] < 0 && open(c) > 0 && lacks(c) > kTolerance; };
+  orbits_.each(cells, cut, wants, [&](const Images& from, unsigned which) {
+    start(cells, from, which, &after, kReachOfDeficit);
+    while (const unsigned at = search_.next(found)) {
+      Amounts moved = {};
+      unsigned moving = 0;
+      for (int g = 0; g < 4; ++g) {
+        const float holds = has(at, g) ? open(found[g]) : 0;
+        if (holds <= 0) continue;
+        moved[g] = shared(lacks(from[g]), sharing(from, at, g), excess_[found[g]] + 0.5f * holds,
+                          sharing(found, at, g));
+        if (moved[g] <= kTolerance) continue;
+        moving |= 1u << g;
+        drawnOn_.push_back(found[g]);
+      }
+      if (!moving) continue;
+      routeAll(from, moved, moving, -1);
+      for (int g = 0; g < 4; ++g)
+        if (has(which, g) && lacks(from[g]) <= kTolerance) search_.stop(g);
+    }
+  });
 }
 
-// Sends a volume along the path that the last search, which began at `to`, took to `from`: each cell on the
-// way passes on what it has, so that smoke moves by one cell rather than by the whole way.
-void TransferPlan::send(int from, int to, float volume) {
-  path_.clear();
-  for (int c = from; c != to; c = cameFrom_[c]) path_.push_back(c);
-  int last = to;
-  for (int k = static_cast<int>(path_.size()) - 1; k >= 0; --k) {
-    const int c = path_[k];
-    if (k > 0 && content_[c] < 1.5f * volume) continue;
-    exchanged_.push_back({c, last, std::min(1.0f, volume / content_[c])});
-    last = c;
+// Sends volumes along the paths that the images' searches, which began at `to`, took to `from`: each cell on
+// the way passes on what it has, so that smoke moves by one cell rather than by the whole way.
+void TransferPlan::send(const SmokeCells& cells, const Images& from, const Images& to, const Amounts& volume,
+                        unsigned which) {
+  const auto forPath = [&](int g, auto&& body) {
+    for (int c = from[g]; c != to[g]; c = search_.cellBefore(cells, g, c)) body(c);
+  };
+  for (int g = 0; g < 4; ++g)
+    if (has(which, g)) forPath(g, [&](int c) { ++drawing_[c]; });
+  const std::size_t begin = exchanged_.size();
+  for (int g = 0; g < 4; ++g) {
+    if (!has(which, g)) continue;
+    path_.clear();
+    forPath(g, [&](int c) { path_.push_back(c); });
+    int last = to[g];
+    for (int k = static_cast<int>(path_.size()) - 1; k >= 0; --k) {
+      const int c = path_[k];
+      if (k > 0 && content_[c] < 1.5f * volume[g] * static_cast<float>(drawing_[c])) continue;
+      exchanged_.push_back({c, last, std::min(1.0f, volume[g] / content_[c])});
+      last = c;
+    }
   }
-  content_[from] -= volume;
-  excess_[from] -= volume;
-  content_[to] += volume;
-  excess_[to] += volume;
+  for (int g = 0; g < 4; ++g)
+    if (has(which, g)) forPath(g, [&](int c) { drawing_[c] = 0; });
+  if (which & (which - 1)) endGroup(exchanged_, begin);
+  shift(from, to, volume, which);
 }
 
 void TransferPlan::exchange(const SmokeCells& cells, const std::vector<int>& nodes,
@@ -308,26 +361,40 @@ void TransferPlan::exchange(const SmokeCells& cells, const std::vector<int>& nod
     content_[c] = carried(cells.i(c), cells.j(c));
     excess_[c] = content_[c] - open;
   }
-  for (int reach : kReachOfExchange)
-    for (int c : nodes) {
-      if (volumeOf(cells, after, c) <= 0 || -excess_[c] <= kTolerance) continue;
-      search(cells, c, &after, reach, [&](int other) {
-        const float moved = smallest(-excess_[c], excess_[other], kMostTaken * content_[other]);
-        if (moved > kTolerance && volumeOf(cells, after, other) > 0) send(other, c, moved);
-        return -excess_[c] <= kTolerance;
-      });
+  Images found;
+  // What each cell of an orbit lacks is sent to it from those that its search finds; most(c): of a cell.
+  const auto draw = [&](const Images& to, unsigned which, int reach, auto&& lacks, auto&& most) {
+    start(cells, to, which, &after, reach);
+    while (const unsigned at = search_.next(found)) {
+      Amounts moved = {};
+      unsigned moving = 0;
+      for (int g = 0; g < 4; ++g) {
+        if (!has(at, g) || volumeOf(cells, after, found[g]) <= 0) continue;
+        moved[g] = shared(lacks(to[g]), sharing(to, at, g), most(found[g]), sharing(found, at, g));
+        moving |= static_cast<unsigned>(moved[g] > kTolerance) << g;
+      }
+      if (!moving) continue;
+      send(cells, found, to, moved, moving);
+      for (int g = 0; g < 4; ++g)
+        if (has(which, g) && lacks(to[g]) <= kTolerance) search_.stop(g);
     }
+  };
+  const auto lacks = [&](int c) { return -excess_[c]; };
+  for (int reach : kReachOfExchange)
+    orbits_.each(
+        cells, nodes, [&](int c) { return lacks(c) > kTolerance && volumeOf(cells, after, c) > 0; },
+        [&](const Images& to, unsigned which) {
+          draw(to, which, reach, lacks,
+               [&](int other) { return std::min(excess_[other], kMostTaken * content_[other]); });
+        });
   // A cell that carries less than half of what it holds draws on others.
-  for (int c : nodes) {
-    const float half = 0.5f * volumeOf(cells, after, c);
-    if (half <= 0 || half - content_[c] <= kTolerance) continue;
-    search(cells, c, &after, kReachOfExchange[1], [&](int other) {
-      const float has = volumeOf(cells, after, other);
-      const float moved = std::min(half - content_[c], content_[other] - 0.5f * has);
-      if (has > 0 && moved > kTolerance) send(other, c, moved);
-      return half - content_[c] <= kTolerance;
-    });
-  }
+  const auto lacksHalf = [&](int c) { return 0.5f * volumeOf(cells, after, c) - content_[c]; };
+  orbits_.each(
+      cells, nodes, [&](int c) { return lacksHalf(c) > kTolerance; },
+      [&](const Images& to, unsigned which) {
+        draw(to, which, kReachOfExchange[1], lacksHalf,
+             [&](int other) { return content_[other] - 0.5f * volumeOf(cells, after, other); });
+      });
   auto settle = [&](int c) {
     const float open = volumeOf(cells, after, c);
     if (open > 0) carried(cells.i(c), cells.j(c)) = std::max(content_[c], kTolerance);

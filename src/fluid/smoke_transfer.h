@@ -11,20 +11,27 @@
 // always go together, so a uniform field stays uniform and no value leaves its bounds; what finds no partner
 // near by is carried on.
 //
+// Each cell is dealt with together with its mirror images, and takes and gives no more than its share of what
+// several of them are at: mirror images stay such, to the bit.
+//
 // Nothing is handed from region to region. Limits: a thin wall with open ends that passes a whole cell in one
 // step passes its smoke as well.
 #pragma once
 #include <cstdint>
 #include <vector>
 
+#include "fluid/mirror_search.h"
 #include "fluid/region_match.h"
 #include "fluid/smoke_cells.h"
 
 namespace smokebox {
 
 struct SmokeTransfer {
-  int from = 0, to = 0;  // to = -1: no open cell in reach, the smoke is kept aside
-  float share = 1;       // of the smoke that is in `from` when it is this transfer's turn; 1 means all
+  int from = 0, to = 0;     // to = -1: no open cell in reach, the smoke is kept aside
+  float share = 1;          // of the smoke that is in `from` when it is the turn of this transfer's group
+  std::uint8_t drawing = 1; // how many of its group have the same `from`
+  bool all = false;         // these leave nothing there
+  bool grouped = false;     // the next one is of the same group: at once
 };
 
 struct SmokeGeometry {
@@ -52,30 +59,38 @@ class TransferPlan {
   void clear();
   std::size_t bytes() const;
 
-  /// Nearest open cell by steps between neighbours, whatever lies between, in a region (-1: in any); -1 if
-  /// there is none in reach.
-  int nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region);
+  /// Nearest open cell by steps between neighbours, whatever lies between, in a region (-1: in any), as a
+  /// mirror image of the cell would find it; -1 if there is none in reach.
+  int nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region, int image = 0);
 
  private:
+  using Amounts = std::array<float, 4>;  // by image
+
   void reserve(const SmokeCells& cells);
-  /// Calls visit(cell) for cells by distance from `from`, not itself, until it returns true or about `most`
-  /// are found; through the faces that are open in `geometry`, or through all.
-  template <class Visit>
-  void search(const SmokeCells& cells, int from, const SmokeGeometry* geometry, int most, Visit&& visit);
-  bool passed(const SmokeCells& cells, int cell, const SmokeGeometry& before, const SmokeGeometry& after);
-  void give(int from, int to, float volume, bool all);
-  void send(int from, int to, float volume);
-  void route(const SmokeCells& cells, int from, int to, float volume, Field& courantX, Field& courantY);
+  void start(const SmokeCells& cells, const Images& from, unsigned which, const SmokeGeometry* through,
+             int most);
+  void handOverFrom(const SmokeCells& cells, const Images& from, unsigned which, const RegionMatch& match,
+                    const SmokeGeometry& before, const SmokeGeometry& after);
+  void giveRest(const Images& from, unsigned which, const Images& to);
+  void give(const Images& from, const Images& to, const Amounts& volume, unsigned which);
+  void send(const SmokeCells& cells, const Images& from, const Images& to, const Amounts& volume,
+            unsigned which);
+  void shift(const Images& from, const Images& to, const Amounts& volume, unsigned which);
+  void route(const SmokeCells& cells, int image, int from, int to, float volume, Field& courantX,
+             Field& courantY);
   void correctFlows(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& after,
                     Field& courantX, Field& courantY);
+  void endGroup(std::vector<SmokeTransfer>& transfers, std::size_t begin);
 
   std::vector<SmokeTransfer> handed_, exchanged_;
-  std::vector<float> excess_, content_;       // by cell; 0 and 1 outside the list
-  std::vector<std::uint8_t> passed_;          // by cell: a thin wall has passed it in this step
-  std::vector<int> seen_, queue_, cameFrom_;  // cameFrom_: by cell, the cell before it
+  std::vector<float> excess_, content_;  // by cell; 0 and 1 outside the list
+  std::vector<std::uint8_t> passed_;     // by cell: a thin wall has passed it in this step
+  MirrorSearch search_;
+  MirrorOrbits orbits_;
   std::vector<int> path_, drawnOn_;
-  std::vector<int> barren_;  // by cell: the last hand-over in which nothing was to be found around it
-  int search_ = 0, barrenNow_ = 0;
+  std::vector<std::uint8_t> drawing_;  // by cell; 0 between uses
+  std::vector<int> barren_;            // by cell: the last hand-over in which nothing was to be found around it
+  int barrenNow_ = 0;
 };
 
 }  // namespace smokebox
