@@ -114,7 +114,7 @@ void SolidsOnGrid::cover(const std::vector<MovingSolid>& solids, bool shapesMove
     coverGrid(grid, outlines_, cover_, {boundary.periodicX(), boundary.periodicY()});
     setShares(cover_, boundary);
   }
-  const CoveredBy by{solids, copies_, cover_};
+  const CoveredBy by{solids, copies_, cover_, grid.h};
   setWallVelocities(by, boundary, weightsU_, weightsV_);
   findCutLinks(by, true, boundary, boundary.linksU);
   findCutLinks(by, false, boundary, boundary.linksV);

@@ -36,13 +36,16 @@ struct MovingSolid {
   Vec2 velocityAt(Vec2 p) const { return velocity + spin * perpendicular(p - origin); }
 };
 
-/// Working memory: which share of a face has its velocity summed so far, and which faces these are.
-struct FaceIndex {
+/// Working memory: the sums over what covers a face. In float64, where the order, which is not the mirror
+/// image's, is all one.
+struct FaceSum {
   int i = 0, j = 0;
+  double share = 0, flux = 0;  // of the face; velocity times share
+  double fastest = 0;
 };
 struct FaceWeights {
-  Field share;
-  std::vector<FaceIndex> touched;
+  Field covered;  // 1 + place in `touched`, then the share; 0: none
+  std::vector<FaceSum> touched;
 };
 
 class SolidsOnGrid {

@@ -4,6 +4,29 @@
 #include <cmath>
 
 namespace smokebox {
+
+namespace {
+
+/// The nearest whole multiple of 2^-36 of `largest`: where a sum of things that large all but adds up to 0, the
+/// rounding of positions would show, and part mirror images.
+double rounded(double value, double largest) {
+  if (!(largest > 1e-200)) return value;
+  const double quantum = std::ldexp(1.0, std::ilogb(largest) - 36);
+  return std::nearbyint(value / quantum) * quantum;
+}
+
+}  // namespace
+
+Vec2 CoveredBy::velocityAt(int copy, Vec2 p) const {
+  const MovingSolid& solid = solids[copies[copy].solid];
+  const Vec2 at = p - copies[copy].shift, turns = solid.spin * (at - solid.origin);
+  const Vec2 velocity = solid.velocityAt(at);
+  const double largest =
+      std::max({std::fabs(solid.velocity.x), std::fabs(solid.velocity.y), std::fabs(turns.x),
+                std::fabs(turns.y), std::fabs(solid.spin) * h});
+  return {rounded(velocity.x, largest), rounded(velocity.y, largest)};
+}
+
 namespace {
 
 /// One kind of faces at a time; coordinates are swapped so that "along" is the direction of the face's line.
@@ -16,7 +39,7 @@ class FaceVelocities {
         lines_(xFaces ? grid.nx + 1 : grid.ny + 1),
         faces_(xFaces ? grid.ny : grid.nx),
         wall_(wall),
-        weight_(weights.share),
+        covered_(weights.covered),
         touched_(weights.touched) {}
 
   void run(bool joined) {
@@ -56,20 +79,32 @@ class FaceVelocities {
       wall = static_cast<float>(normal);
       return;
     }
-    float& weight = at(weight_, line, face);
-    if (weight == 0) touched_.push_back(xFaces_ ? FaceIndex{line, face} : FaceIndex{face, line});
-    const double sum = weight + share;
-    wall = static_cast<float>(wall + (normal - wall) * (share / sum));  // a running mean
-    weight = static_cast<float>(sum);
+    float& place = at(covered_, line, face);
+    if (place == 0) {
+      touched_.push_back(xFaces_ ? FaceSum{line, face} : FaceSum{face, line});
+      place = static_cast<float>(touched_.size());
+    }
+    FaceSum& sum = touched_[static_cast<std::size_t>(place) - 1];
+    sum.share += share;
+    sum.flux += share * normal;
+    sum.fastest = std::max(sum.fastest, std::fabs(normal));
   }
 
   const CoveredBy& by_;
   bool xFaces_;
   double h_;
   int lines_, faces_;
-  Field &wall_, &weight_;
-  std::vector<FaceIndex>& touched_;
+  Field &wall_, &covered_;
+  std::vector<FaceSum>& touched_;
 };
+
+/// The mean over what covers each face; then `covered` is which share of it that is.
+void average(Field& wall, FaceWeights& weights) {
+  for (const FaceSum& face : weights.touched) {
+    wall(face.i, face.j) = static_cast<float>(rounded(face.flux / face.share, face.fastest));
+    weights.covered(face.i, face.j) = static_cast<float>(face.share);
+  }
+}
 
 /// Adds the wall's or inflow's own velocity on the part of its faces that no solid covers.
 void addSide(const Boundary& boundary, Side side, Field& wall, const Field& weight) {
@@ -90,9 +125,9 @@ void addSide(const Boundary& boundary, Side side, Field& wall, const Field& weig
 
 /// No velocity where so little closes the face that it counts as open; the weights go back to 0.
 void finish(const Field& open, Field& wall, FaceWeights& weights) {
-  for (const FaceIndex& face : weights.touched) {
+  for (const FaceSum& face : weights.touched) {
     if (open(face.i, face.j) == 1) wall(face.i, face.j) = 0;
-    weights.share(face.i, face.j) = 0;
+    weights.covered(face.i, face.j) = 0;
   }
   weights.touched.clear();
 }
@@ -102,16 +137,18 @@ void finish(const Field& open, Field& wall, FaceWeights& weights) {
 void setWallVelocities(const CoveredBy& by, Boundary& boundary, FaceWeights& ofU, FaceWeights& ofV) {
   const Grid& grid = boundary.grid;
   for (FaceWeights* weights : {&ofU, &ofV})
-    if (weights->share.nx() != grid.nx || weights->share.ny() != grid.ny)
-      weights->share = Field(grid.nx, grid.ny);
+    if (weights->covered.nx() != grid.nx || weights->covered.ny() != grid.ny)
+      weights->covered = Field(grid.nx, grid.ny);
   boundary.wallU.fill(0);
   boundary.wallV.fill(0);
   FaceVelocities(by, true, grid, boundary.wallU, ofU).run(boundary.periodicX());
   FaceVelocities(by, false, grid, boundary.wallV, ofV).run(boundary.periodicY());
-  addSide(boundary, Side::left, boundary.wallU, ofU.share);
-  addSide(boundary, Side::right, boundary.wallU, ofU.share);
-  addSide(boundary, Side::bottom, boundary.wallV, ofV.share);
-  addSide(boundary, Side::top, boundary.wallV, ofV.share);
+  average(boundary.wallU, ofU);
+  average(boundary.wallV, ofV);
+  addSide(boundary, Side::left, boundary.wallU, ofU.covered);
+  addSide(boundary, Side::right, boundary.wallU, ofU.covered);
+  addSide(boundary, Side::bottom, boundary.wallV, ofV.covered);
+  addSide(boundary, Side::top, boundary.wallV, ofV.covered);
   finish(boundary.openX, boundary.wallU, ofU);
   finish(boundary.openY, boundary.wallV, ofV);
   wrapFaces(boundary, true, boundary.wallU);

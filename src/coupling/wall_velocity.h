@@ -9,10 +9,10 @@ struct CoveredBy {
   const std::vector<MovingSolid>& solids;
   const std::vector<SolidsOnGrid::Copy>& copies;
   const GridCover& geometry;
+  double h;
 
-  Vec2 velocityAt(int copy, Vec2 p) const {
-    return solids[copies[copy].solid].velocityAt(p - copies[copy].shift);
-  }
+  /// Rounded where the solid's motion all but adds up to 0.
+  Vec2 velocityAt(int copy, Vec2 p) const;
 };
 
 /// Sets boundary.wallU, wallV from the solids and the sides. The weights are all 0, and are so again

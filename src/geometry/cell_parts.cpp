@@ -9,24 +9,30 @@ namespace {
 /// Parts of less than this share of a cell are rounding, not fluid (an outline along a grid line leaves such
 /// slivers).
 constexpr double kSliver = 4e-6;
+constexpr double kAlike = 1e-9;  // areas and places nearer to each other than this, in cells, are the same
+constexpr double kFine = 1 << 26;
 
-/// Area of a polygon given point by point, in units of the cell, relative to its corner.
+/// Area and centre of a polygon given point by point, in units of the cell, relative to its corner.
 class Shoelace {
  public:
   Shoelace(const Grid& grid, int i, int j) : corner_{i * grid.h, j * grid.h}, scale_(1 / grid.h) {}
   void add(Vec2 p) {
     const Vec2 local = scale_ * (p - corner_);
-    if (empty_)
+    if (empty_) {
       first_ = local;
-    else
-      twice_ += cross(last_ - first_, local - first_);
+    } else {
+      const double twice = cross(last_ - first_, local - first_);
+      twice_ += twice;
+      moment_ = moment_ + twice * ((last_ - first_) + (local - first_));
+    }
     last_ = local;
     empty_ = false;
   }
   double area() const { return twice_ / 2; }
+  Vec2 centre() const { return first_ + (1 / (3 * twice_)) * moment_; }
 
  private:
-  Vec2 corner_, first_, last_;
+  Vec2 corner_, first_, last_, moment_;
   double scale_, twice_ = 0;
   bool empty_ = true;
 };
@@ -56,12 +62,14 @@ class CellCut {
     }
     if (!endsTakeTurns()) {  // outlines that cross themselves by a rounding
       keepWhole();
-      volume = 0.25f * (cover_.openX(i_, j_) + cover_.openX(i_ + 1, j_) + cover_.openY(i_, j_) +
-                        cover_.openY(i_, j_ + 1));
+      volume = 0.25f * ((cover_.openX(i_, j_) + cover_.openX(i_ + 1, j_)) +
+                        (cover_.openY(i_, j_) + cover_.openY(i_, j_ + 1)));
       return;
     }
     traceParts();
-    volume = kept_ < 0 ? 0.0f : static_cast<float>(std::clamp(keptArea_, 0.0, 1.0));
+    // In whole parts of a cell: slivers, which are differences of larger areas, keep no rounding of those.
+    volume =
+        kept_ < 0 ? 0.0f : static_cast<float>(std::nearbyint(std::clamp(keptArea_, 0.0, 1.0) * kFine) / kFine);
     if (parts_ > 1 || kept_ < 0) shutTheOthers();
   }
 
@@ -170,12 +178,24 @@ class CellCut {
         k = work_.nextEnd[out];
       }
       const double area = boundary.area() - islandArea(start);
-      if (area > kSliver && area > keptArea_) {
-        kept_ = parts_;
-        keptArea_ = area;
-      }
+      if (area > kSliver) offer(area, boundary.centre());
       ++parts_;
     }
+  }
+
+  /// Keeps the current part if it is larger than those so far. Of equal ones it is the one farther from the
+  /// middle of the grid, along x, then along y, so that mirror images keep mirrored ones; of two that are
+  /// each other's image none.
+  void offer(double area, Vec2 centre) {
+    const double x = std::fabs(i_ + centre.x - 0.5 * grid_.nx), y = std::fabs(j_ + centre.y - 0.5 * grid_.ny);
+    const auto more = [](double a, double b) { return a > b + kAlike ? 1 : a < b - kAlike ? -1 : 0; };
+    int better = more(area, keptArea_);
+    if (better == 0) better = more(x, keptFrom_.x);
+    if (better == 0) better = more(y, keptFrom_.y);
+    if (better < 0) return;
+    kept_ = better > 0 ? parts_ : -1;
+    keptArea_ = area;
+    keptFrom_ = {x, y};
   }
 
   /// Area of the solids that lie wholly inside the part that starts at an end (-1: inside the cell), in
@@ -241,6 +261,7 @@ class CellCut {
   CoverWork& work_;
   int parts_ = 0, kept_ = -1;
   double keptArea_ = 0;
+  Vec2 keptFrom_;  // where its centre lies from the middle of the grid
 };
 
 }  // namespace

@@ -8,7 +8,8 @@
 // rounding.
 //
 // A thin wall never leaks: where outlines part the fluid of a cell into several pieces, the cell keeps the
-// largest; the parts of its faces that lead to the others only are shut. So every pair of open faces of a
+// largest (of two that are each other's mirror image about the middle of the grid: none); the parts of its
+// faces that lead to the others only are shut. So every pair of open faces of a
 // cell is joined by fluid inside it, and a chain of open faces is a way through the true geometry.
 #pragma once
 #include <vector>

@@ -1,10 +1,18 @@
 #include "world/solid_scripts.h"
 
+#include <cmath>
 #include <utility>
 
 namespace smokebox {
 
-SolidScripts::SolidScripts(const std::vector<SolidSpec>& specs, double tolerance) {
+namespace {
+constexpr double kLeastTurn = 1.0 / (1LL << 44);  // rad
+
+double whole(double value, double quantum) { return std::nearbyint(value / quantum) * quantum; }
+}  // namespace
+
+SolidScripts::SolidScripts(const std::vector<SolidSpec>& specs, double tolerance)
+    : leastMove_(std::ldexp(tolerance, -24)) {
   scripts_.reserve(specs.size());
   moving_.resize(specs.size());
   for (int k = 0; k < static_cast<int>(specs.size()); ++k) {
@@ -40,8 +48,10 @@ void SolidScripts::move(double time, double dt) {
     if (script.stopped || script.spec.motion.isStill()) continue;
     const Pose next = script.spec.motion.poseAt(time + dt - script.since, script.rest);
     if (next == script.pose) continue;
-    moving.velocity = (1 / dt) * (next.position - script.pose.position);
-    moving.spin = (next.angleRad - script.pose.angleRad) / dt;
+    // Less is the rounding of positions, which differs from mirror image to mirror image.
+    const Vec2 by = next.position - script.pose.position;
+    moving.velocity = (1 / dt) * Vec2{whole(by.x, leastMove_), whole(by.y, leastMove_)};
+    moving.spin = whole(next.angleRad - script.pose.angleRad, kLeastTurn) / dt;
     place(k, next);
     shapesMoved_ = true;
   }

@@ -50,6 +50,7 @@ class SolidScripts {
 
   std::vector<Script> scripts_;
   std::vector<MovingSolid> moving_;
+  double leastMove_;  // m, in a step
   bool shapesMoved_ = true;
 };
 
