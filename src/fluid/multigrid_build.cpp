@@ -49,13 +49,6 @@ void Builder::coarsen(Level& fine, Level& coarse) {
 // as one.
 void Builder::chooseColours(Level& level) {
   bool mirrorX = level.nx % 2 == 0 && !level.periodicX, mirrorY = level.ny % 2 == 0 && !level.periodicY;
-  // Not where blocks are split there: the colours then go on as everywhere, and mirror images differ by
-  // rounding.
-  for (int cell : level.extraCell) {
-    const int fromX = 2 * (cell % level.nx) + 1 - level.nx, fromY = 2 * (cell / level.nx) + 1 - level.ny;
-    mirrorX &= fromX < -3 || fromX > 3;
-    mirrorY &= fromY < -3 || fromY > 3;
-  }
   level.tellsWhole = !level.bandCells.empty() || level.extras > 0;
   level.swapsAt = mirrorX ? level.nx / 2 : level.chunks * kLanes + kLanes;
   level.swapsAtRow = mirrorY ? level.ny / 2 : level.ny + 1;
@@ -74,6 +67,29 @@ void Builder::listSpecials(Level& level) {
   for (const Raw& link : raw_) {
     mark(link.a);
     if (!link.ghost) mark(link.b);
+  }
+  // In the middle rows and columns, special ones are solved in pairs by themselves: so are then those beside
+  // extra unknowns that have no link to them, but whose mirror images may, and those that make a pair with
+  // one.
+  const auto markMiddle = [&](int i, int j) {
+    if (i < 0 || i >= level.nx || j < 0 || j >= level.ny) return;
+    if (!level.inMiddleRows(j) && i != level.swapsAt && i != level.swapsAt - 1) return;
+    const std::ptrdiff_t at = level.at(i, j);
+    const int right = level.swapsAt, upper = level.swapsAtRow;
+    if ((i == right && level.ax[at] > 0) || (i == right - 1 && level.ax[at + 1] > 0))
+      mark(static_cast<int>(i == right ? at - 1 : at + 1));
+    if ((j == upper && level.ay[at] > 0) || (j == upper - 1 && level.ay[at + level.stride] > 0))
+      mark(static_cast<int>(j == upper ? at - level.stride : at + level.stride));
+    if (level.ax[at] > 0 || level.ax[at + 1] > 0 || level.ay[at] > 0 || level.ay[at + level.stride] > 0)
+      mark(static_cast<int>(at));
+  };
+  for (int cell : level.extraCell) {
+    const int i = cell % level.nx, j = cell / level.nx;
+    markMiddle(i, j);
+    markMiddle(i - 1, j);
+    markMiddle(i + 1, j);
+    markMiddle(i, j - 1);
+    markMiddle(i, j + 1);
   }
   const int count = static_cast<int>(specials_.size());
   level.specialAt.resize(count);
