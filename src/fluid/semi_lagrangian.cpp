@@ -18,25 +18,29 @@ typedef float Quad __attribute__((vector_size(16), aligned(4), may_alias));
 
 inline Quad quadAt(const float* p) { return *reinterpret_cast<const Quad*>(p); }
 
-/// Catmull-Rom.
+/// Catmull-Rom: b (-a b/2), b (1 + a - 3/2 a^2) with b = 1 - a, and those with a and b exchanged, so that 1 - a
+/// has the same weights the other way round.
 inline Quad weights(float a) {
-  constexpr Quad c0 = {0, 1, 0, 0}, c1 = {-0.5f, 0, 0.5f, 0}, c2 = {1, -2.5f, 2, -0.5f},
-                 c3 = {-0.5f, 1.5f, -1.5f, 0.5f};
-  return c0 + a * (c1 + a * (c2 + a * c3));
+  constexpr Quad c0 = {0, 1, 1, 0}, c1 = {-0.5f, 1, 1, -0.5f}, c2 = {0.5f, -1.5f, -1.5f, 0.5f};
+  const float b = 1 - a;
+  const Quad outer = {b, b, a, a}, inner = {a, a, b, b};
+  return outer * (c0 + inner * (c1 + inner * c2));
 }
 
 inline Quad smaller(const Quad& a, const Quad& b) { return a < b ? a : b; }
 inline Quad larger(const Quad& a, const Quad& b) { return a > b ? a : b; }
 
-/// Between the 16 samples around p + (a, b), 0 <= a, b <= 1, and within the range of the middle four.
+/// Between the 16 samples around p + (a, b), 0 <= a, b < 1, and within the range of the nearest four; on a line
+/// of samples within that of the nearest two.
 inline float limitedCubic(const float* p, std::ptrdiff_t stride, float a, float b) {
   const Quad wx = weights(a), wy = weights(b);
   const Quad r0 = quadAt(p - stride - 1), r1 = quadAt(p - 1), r2 = quadAt(p + stride - 1),
              r3 = quadAt(p + 2 * stride - 1);
   const Quad product = wx * ((wy[1] * r1 + wy[2] * r2) + (wy[0] * r0 + wy[3] * r3));
   const float sum = (product[1] + product[2]) + (product[0] + product[3]);
-  const Quad low = smaller(r1, r2), high = larger(r1, r2);
-  return std::min(std::max(sum, std::min(low[1], low[2])), std::max(high[1], high[2]));
+  const Quad second = b > 0 ? r2 : r1, low = smaller(r1, second), high = larger(r1, second);
+  const int right = a > 0 ? 2 : 1;
+  return std::min(std::max(sum, std::min(low[1], low[right])), std::max(high[1], high[right]));
 }
 
 struct Sample {
@@ -134,7 +138,7 @@ class OpenPaths {
 #pragma omp simd reduction(max : reachX, reachY)
     for (int k = 0; k < count; ++k) {
       const auto column = static_cast<float>(begin + k);
-      const float dx = half * vx[k], dy = half * vy[k];
+      const float dx = inWholeParts(half * vx[k]), dy = inWholeParts(half * vy[k]);
       // The samples of u are (0, 1/2) from the nodes, those of v (1/2, 0).
       place(inU, k, stride, sampleAt<PeriodicX>(sizeX, column, 0.0f, dx + shiftX),
             sampleAt<PeriodicY>(sizeY, row, 0.5f, dy + (shiftY - 0.5f)));
@@ -150,7 +154,7 @@ class OpenPaths {
 #pragma omp simd reduction(max : reachX, reachY)
     for (int k = 0; k < count; ++k) {
       const auto column = static_cast<float>(begin + k);
-      const float dx = whole * ux[k], dy = whole * uy[k];
+      const float dx = inWholeParts(whole * ux[k]), dy = inWholeParts(whole * uy[k]);
       const Sample x = sampleAt<PeriodicX>(sizeX, column, shiftX, dx),
                    y = sampleAt<PeriodicY>(sizeY, row, shiftY, dy);
       feet.at[k] = static_cast<int>(y.below) * stride + static_cast<int>(x.below);
@@ -179,9 +183,10 @@ void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, 
   }
 }
 
-float takeAt(const Field& f, float x, float y) {
-  const float fx = std::floor(x), fy = std::floor(y);
-  return limitedCubic(f.row(static_cast<int>(fy)) + static_cast<int>(fx), f.stride(), x - fx, y - fy);
+float takeAt(const Field& f, double x, double y) {
+  const double fx = std::floor(x), fy = std::floor(y);
+  return limitedCubic(f.row(static_cast<int>(fy)) + static_cast<int>(fx), f.stride(),
+                      static_cast<float>(x - fx), static_cast<float>(y - fy));
 }
 
 }  // namespace
@@ -251,7 +256,7 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
         for (int i = x0; i < x0 + count; ++i)
           if (boundary.openX(i, j) > 0) {
             const auto foot = careful.footOfU(i, j);
-            outU(i, j) = takeAt(u, foot.x, foot.y - 0.5f);
+            outU(i, j) = takeAt(u, foot.x, foot.y - 0.5);
           }
       }
       for (int x0 = 0; x0 < nx; x0 += kTile) {
@@ -264,7 +269,7 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
         for (int i = x0; i < x0 + count; ++i)
           if (boundary.openY(i, j) > 0) {
             const auto foot = careful.footOfV(i, j);
-            outV(i, j) = takeAt(v, foot.x - 0.5f, foot.y);
+            outV(i, j) = takeAt(v, foot.x - 0.5, foot.y);
           }
       }
     }
