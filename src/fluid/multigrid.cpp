@@ -21,8 +21,10 @@ constexpr int kSweeps = kFullSweeps + 2 * kBandPairs;
 template <bool bandOnly, bool start = false>
 void sweepUnit(Level& level, int j, int colour) {
   if (level.hasMiddleRows() && level.inMiddleRows(j))
-    multigrid::MiddleRows(level).sweep<bandOnly, start>(colour);
-  else if constexpr (start) {
+    multigrid::RowPair::middle(level).sweep<bandOnly, start>(colour);
+  else if (level.inSeamRows(j)) {
+    if (j == 0) multigrid::RowPair::seam(level).sweep<bandOnly, start>(colour);  // and the last one
+  } else if constexpr (start) {
     startRow(level, j);
     multigrid::solveSpecialPairs<true>(level, j, colour);
     level.wrapRow(level.row(level.x, j));
@@ -180,10 +182,7 @@ bool Multigrid::shared(const Level& level) const {
 
 template <class Body>
 void Multigrid::rows(const Level& level, int first, int last, Body&& body) {
-  // Across the seam of an odd number of periodic rows, blocks of one colour are linked: one after the other
-  // there.
-  const bool serial = level.periodicY && level.ny % 2 == 1 && level.extras > 0;
-  forRows(pool_, serial ? 0 : static_cast<long>(level.nx) * level.ny, first, last, body);
+  forRows(pool_, static_cast<long>(level.nx) * level.ny, first, last, body);
 }
 
 template <class Sweep, class Then>

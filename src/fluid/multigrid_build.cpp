@@ -48,7 +48,7 @@ void Builder::coarsen(Level& fine, Level& coarse) {
 // In the middle of mirrored colours two columns, or two rows, have one colour; a sweep solves each such pair
 // as one.
 void Builder::chooseColours(Level& level) {
-  bool mirrorX = level.nx % 2 == 0 && !level.periodicX, mirrorY = level.ny % 2 == 0 && !level.periodicY;
+  const bool mirrorX = level.nx % 2 == 0, mirrorY = level.ny % 2 == 0;
   level.tellsWhole = !level.bandCells.empty() || level.extras > 0;
   level.swapsAt = mirrorX ? level.nx / 2 : level.chunks * kLanes + kLanes;
   level.swapsAtRow = mirrorY ? level.ny / 2 : level.ny + 1;

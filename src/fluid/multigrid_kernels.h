@@ -159,24 +159,48 @@ SMOKEBOX_INLINE void solvePair(float& a, float& b, float overA, float overB, flo
   b = (q + overB * p) * scale;
 }
 
-/// The two columns of one colour in the middle of mirrored colours.
-struct MiddlePair {
-  float left = 0, right = 0;  // old values
-
-  void solve(Level& level, int j, float* x) const {
-    const int b = level.swapsAt, a = b - 1;
-    const std::ptrdiff_t at = level.at(b, j);
-    const float link = level.ax[at];
-    solvePair(x[a], x[b], link * level.id[at - 1], link * level.id[at], left, right);
+/// Two cells of a row, of one colour and linked: in the middle, or across the seam.
+class ColumnPair {
+ public:
+  /// Cells a and b = a + 1, or the last and the first of the row. `swept`: both are.
+  ColumnPair(const Level& level, int a, int b, int j, bool swept) : swept_(swept) {
+    if (!swept) return;
+    const std::ptrdiff_t atA = level.at(a, j), atB = level.at(b, j);
+    a_ = a, b_ = b;
+    overA_ = level.ax[atB] * level.id[atA];
+    overB_ = level.ax[atB] * level.id[atB];
   }
+  void keep(const float* x) {
+    if (swept_) wasA_ = x[a_], wasB_ = x[b_];
+  }
+  void solve(float* x) const {
+    if (swept_) solvePair(x[a_], x[b_], overA_, overB_, wasA_, wasB_);
+  }
+
+ private:
+  bool swept_;
+  int a_ = 0, b_ = 0;
+  float overA_ = 0, overB_ = 0, wasA_ = 0, wasB_ = 0;  // was: before the sweep
 };
 
-/// Is row j's middle pair of this colour, and swept?
+/// Row j's pair in the middle, if it is of this colour and swept. Those of two rows of one colour make four.
 template <bool bandOnly>
-inline bool sweepsMiddle(const Level& level, int j, int colour) {
+inline ColumnPair middlePair(const Level& level, int j, int colour) {
   const int b = level.swapsAt, a = b - 1;
-  if (b >= level.nx || level.inMiddleRows(j) || level.colourOf(b, j) != colour) return false;
-  return !bandOnly || (level.inBand(a, j) && level.inBand(b, j));
+  return ColumnPair(level, a, b, j,
+                    b < level.nx && !level.inMiddleRows(j) && !level.inSeamRows(j) &&
+                        level.colourOf(b, j) == colour &&
+                        (!bandOnly || (level.inBand(a, j) && level.inBand(b, j))));
+}
+
+/// The same across the seam; two rows of one colour have none.
+template <bool bandOnly>
+inline ColumnPair seamPair(const Level& level, int j, int colour) {
+  const int a = level.nx - 1, b = 0;
+  return ColumnPair(level, a, b, j,
+                    level.hasSeamColumns() && !level.inMiddleRows(j) && !level.inSeamRows(j) &&
+                        level.colourOf(b, j) == colour &&
+                        (!bandOnly || (level.inBand(a, j) && level.inBand(b, j))));
 }
 
 /// What a special unknown's neighbours add up to: along x, then along y, and more than two to one side in
@@ -248,11 +272,12 @@ inline void sweepGrid(Level& level, int j, int colour) {
   const std::ptrdiff_t stride = level.stride;
   const Level::Run* run = (bandOnly ? level.bandRuns : level.runs).data() + begin[j];
   const Level::Run* end = (bandOnly ? level.bandRuns : level.runs).data() + begin[j + 1];
-  const bool middle = sweepsMiddle<bandOnly>(level, j, colour);
+  ColumnPair middle = middlePair<bandOnly>(level, j, colour), seam = seamPair<bandOnly>(level, j, colour);
+  middle.keep(x);
+  seam.keep(x);
   const std::uint16_t* cells = bandOnly && !level.bandCells.empty()
                                    ? level.bandCells.data() + static_cast<std::size_t>(j) * level.chunks
                                    : nullptr;
-  const MiddlePair pair = middle ? MiddlePair{x[level.swapsAt - 1], x[level.swapsAt]} : MiddlePair{};
   Lanes left = {};
   for (int done = -1; run != end; ++run) {
     // The left neighbours of the next chunk are loaded before this one is stored: the store would stall the
@@ -277,7 +302,8 @@ inline void sweepGrid(Level& level, int j, int colour) {
       }
     }
   }
-  if (middle) pair.solve(level, j, x);
+  middle.solve(x);
+  seam.solve(x);
 }
 
 /// The same with the special unknowns: those and the others of their colour see each other's old values.
@@ -308,7 +334,8 @@ inline void startRow(Level& level, int j) {
         store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * load(id + i) : zero);
     }
   }
-  if (sweepsMiddle<false>(level, j, 0)) MiddlePair().solve(level, j, x);
+  middlePair<false>(level, j, 0).solve(x);
+  seamPair<false>(level, j, 0).solve(x);
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)
     level.x[level.specialAt[s]] =
         level.b[level.specialAt[s]] * level.specialInverse[s] * level.specialShare[s];
@@ -317,12 +344,14 @@ inline void startRow(Level& level, int j) {
   level.wrapRow(x);
 }
 
-/// What the two rows in the middle of mirrored colours held before a sweep of one colour, and its end: each
-/// pair of cells above each other is solved as one, from what the sweep made of each with the old value of
-/// the other; and so are the four cells in the very middle, all of one colour.
-class MiddleRows {
+/// Two rows of one colour that are neighbours, in the middle of mirrored colours or across the seam: what they
+/// held before a sweep of one colour, and its end: each pair of cells above each other is solved as one, from
+/// what the sweep made of each with the old value of the other; and so are the four cells in the middle of
+/// the rows, all of one colour.
+class RowPair {
  public:
-  explicit MiddleRows(Level& level) : level_(level), upper_(level.swapsAtRow), lower_(upper_ - 1) {}
+  static RowPair middle(Level& level) { return RowPair(level, level.swapsAtRow - 1, level.swapsAtRow, 0); }
+  static RowPair seam(Level& level) { return RowPair(level, level.ny - 1, 0, 3); }
 
   /// Both rows in one sweep. `start`: the first sweep, from the value 0.
   template <bool bandOnly, bool start = false>
@@ -354,9 +383,11 @@ class MiddleRows {
   }
 
  private:
+  RowPair(Level& level, int lower, int upper, int scratch)
+      : level_(level), upper_(upper), lower_(lower), scratch_(scratch) {}
   int width() const { return level_.nx + 2; }
   /// Scratch of the level: a row with its copies beyond the sides.
-  float* old(int k) { return level_.middle.data() + k * (width() + kLanes); }
+  float* old(int k) { return level_.middle.data() + (scratch_ + k) * (width() + kLanes); }
 
   template <bool bandOnly>
   void join(int colour) {
@@ -385,7 +416,7 @@ class MiddleRows {
     level_.wrapRow(above);
   }
 
-  /// The four cells 0 1 / 2 3 (below, above) in a ring, from what Jacobi's step has made of each. Two that
+  /// The four cells 0 1 / 2 3 (below, above) in the middle, in a ring, from what Jacobi's step has made of each. Two that
   /// are not linked are found by eliminating the other two, and those by eliminating these: mirror images do
   /// the same.
   void solveFour(float* below, float* above, const float* wasBelow, const float* wasAbove) const {
@@ -424,7 +455,7 @@ class MiddleRows {
   }
 
   Level& level_;
-  int upper_, lower_;
+  int upper_, lower_, scratch_;
 };
 
 /// Sum over the links of  weight (value here - value there)  in one chunk of a row.

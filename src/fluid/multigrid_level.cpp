@@ -45,7 +45,7 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
   specialPairBegin.assign(2 * ny + 1, 0);
   prolongBegin.assign(ny + 1, 0);
 
-  middle.assign(3 * (nx + 2 + kLanes), 0);
+  middle.assign((periodicY ? 6 : 3) * (nx + 2 + kLanes), 0);
   joinX = Joining(nx);
   joinY = Joining(ny);
   residualRows = wholeResidual ? ny : std::min(ny, ny % 2 == 0 ? 2 : 3);

@@ -80,7 +80,8 @@ struct Level {
   Joining joinX, joinY;  // to the next coarser level
   // The colours are mirrored about the middle of an even number of columns and about that of an even number
   // of rows (of an odd number they are so by themselves), so that a mirrored problem has the mirrored
-  // solution: from this column on, and from this row on; or from beyond the last.
+  // solution: from this column on, and from this row on; or from beyond the last. Neighbours in the middle, and
+  // across the seam of a periodic level, so have one colour: each pair is solved as one.
   int swapsAt = 0, swapsAtRow = 0;
   double unit = 1;                        // edge of a whole block, in cells of the finest grid
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i
@@ -165,7 +166,7 @@ struct Level {
   std::vector<int> child;  // 4 i + row within the block of a primary unknown, ~k of the extra unknown k
 
   Floats onceX, onceB;        // put by between the first and the second visit of a W-cycle
-  std::vector<float> middle;  // scratch: what the two middle rows held before a sweep
+  std::vector<float> middle;  // scratch: what two rows of one colour held before a sweep
 
   // ---- residual: whole rows; as many as a coarse row has are enough where the sweeps are fused
   Floats residual;
@@ -194,6 +195,10 @@ struct Level {
   /// The two rows in the middle of mirrored colours: cells above each other have one colour there.
   bool inMiddleRows(int j) const { return j == swapsAtRow || j == swapsAtRow - 1; }
   bool hasMiddleRows() const { return swapsAtRow < ny; }
+  /// The first and the last row, or column, of a periodic level: neighbours of one colour.
+  bool hasSeamRows() const { return periodicY && ny > 2; }
+  bool inSeamRows(int j) const { return hasSeamRows() && (j == 0 || j == ny - 1); }
+  bool hasSeamColumns() const { return periodicX && nx > 2; }
   /// Is the cell swept with the band along solids?
   bool inBand(int i, int j) const {
     if (!bandCells.empty())
