@@ -179,8 +179,9 @@ void Smoke::Impl::move(int channel, const std::vector<SmokeTransfer>& transfers)
   }
 }
 
-// Gives back what was kept aside: to the cell, or where that has closed to one that is open near by, up to
-// twice what it holds at the ceiling. What is too much there is spread, or kept aside again.
+// Gives back what was kept aside: to the cell, or where that has closed to one that is open near by (on an axis
+// to those that its images find), up to twice what it holds at the ceiling. What is too much there is spread,
+// or kept aside again.
 void Smoke::Impl::release(int channel, const Boundary& b, float highest) {
   const SmokeCells& cells = volumes.cells();
   Channel& c = channels[channel];
@@ -190,24 +191,34 @@ void Smoke::Impl::release(int channel, const Boundary& b, float highest) {
     if (t.channel != channel) continue;
     const bool open = b.volume(cells.i(t.cell), cells.j(t.cell)) > 0;
     if (!open && (!volumes.moved() || t.region == Trapped::kVanished)) continue;
-    const int to = open && t.region < 0
-                       ? t.cell
-                       : volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions},
-                                                    t.cell, t.region);
-    if (to < 0) continue;
-    const int i = cells.i(to), j = cells.j(to);
-    const double room = 2.0 * highest * volumes.carried()(i, j) - c.mass(i, j);
-    const double moved = std::floor(std::min(t.mass, std::max(room, 0.0)) * q.inverse) * q.size;
-    t.mass -= moved;
-    if (t.mass < q.size) {
+    const int fromRight = 2 * cells.i(t.cell) + 1 - cells.nx, fromTop = 2 * cells.j(t.cell) + 1 - cells.ny;
+    Images to = {-1, -1, -1, -1};
+    int count = 0;
+    for (int g = 0; g < 4; ++g) {
+      if ((g & 1 ? fromRight < 0 : fromRight > 0) || (g & 2 ? fromTop < 0 : fromTop > 0)) continue;
+      const int found =
+          open && t.region < 0
+              ? t.cell
+              : volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions}, t.cell,
+                                           t.region, g);
+      if (found >= 0 && std::find(to.begin(), to.end(), found) == to.end()) to[count++] = found;
+    }
+    const double share = t.mass / std::max(count, 1);
+    for (int k = 0; k < count; ++k) {
+      const int i = cells.i(to[k]), j = cells.j(to[k]);
+      const double room = 2.0 * highest * volumes.carried()(i, j) - c.mass(i, j);
+      const double moved = std::floor(std::min(share, std::max(room, 0.0)) * q.inverse) * q.size;
+      t.mass -= moved;
+      if (!(moved > 0)) continue;
+      c.mass(i, j) += static_cast<float>(moved);
+      renew(c, to[k], volumes.carried(), kLargest);
+      c.highest = std::max(c.highest, c.value(i, j));
+      touch(c, to[k]);
+    }
+    if (count > 0 && t.mass < count * q.size) {
       c.rounded += t.mass;
       t.mass = 0;
     }
-    if (!(moved > 0)) continue;
-    c.mass(i, j) += static_cast<float>(moved);
-    renew(c, to, volumes.carried(), kLargest);
-    c.highest = std::max(c.highest, c.value(i, j));
-    touch(c, to);
   }
   std::erase_if(trapped, [](const Trapped& t) { return t.mass == 0; });
 }
@@ -463,7 +474,7 @@ void Smoke::Impl::end(int channel, const Boundary& b) {
   c.kept = aside ? std::max(c.kept, before) : 0;
   c.highest = std::max(c.highest, c.kept);
   if (c.highest > 0) c.highest = std::max(c.highest, c.highest + kBoundKept * (before - c.highest));
-  if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.mass, c.value, c.active);
+  if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.quantum, c.mass, c.value, c.active);
 }
 
 // No value above `highest`: what finds no room near by is kept aside.

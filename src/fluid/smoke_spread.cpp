@@ -122,41 +122,53 @@ const std::vector<MassSpread::Overflow>& MassSpread::run(const SmokeCells& cells
   return overflow_;
 }
 
-bool MassSpread::fill(const SmokeCells& cells, const Boundary& b, const Field& volume, Field& mass,
+bool MassSpread::fill(const SmokeCells& cells, const Boundary& b, const Field& volume, Quantum q, Field& mass,
                       Field& value, Activity& active) {
-  seen_.resize(cells.count(), 0);
-  bool all = true;
+  lacking_.clear();
   for (int j = 0; j < cells.ny; ++j) {
     const float* row = mass.row(j);
     float least = 0;
 #pragma omp simd reduction(min : least)
     for (int i = 0; i < cells.nx; ++i) least = row[i] < least ? row[i] : least;
     if (!(least < 0)) continue;
-    for (int i = 0; i < cells.nx; ++i) {
-      if (!(row[i] < 0)) continue;
-      const int from = cells.cell(i, j);
-      queue_.assign(1, from);
-      seen_[from] = ++search_;
-      for (std::size_t head = 0; head < queue_.size() && mass(i, j) < 0; ++head) {
-        for (int face = 0; face < 4 && mass(i, j) < 0; ++face) {
-          if (!(cells.atFace(b.openX, b.openY, queue_[head], face) > 0)) continue;
-          const int next = cells.neighbour(queue_[head], face);
-          if (next < 0 || seen_[next] == search_) continue;
-          seen_[next] = search_;
-          queue_.push_back(next);
-          const int x = cells.i(next), y = cells.j(next);
-          const float given = std::min(-mass(i, j), mass(x, y));
-          if (!(given > 0)) continue;
-          mass(i, j) += given;
-          mass(x, y) -= given;
-          value(x, y) = volume(x, y) > 0 ? mass(x, y) / volume(x, y) : 0.0f;
-          active.at(x / Activity::kStrip, y) = 1;
-        }
-      }
-      all &= mass(i, j) >= 0;
-      value(i, j) = mass(i, j) < 0 ? value(i, j) : 0.0f;
-    }
+    for (int i = 0; i < cells.nx; ++i)
+      if (row[i] < 0) lacking_.push_back(cells.cell(i, j));
   }
+  const auto massOf = [&](int c) -> float& { return mass(cells.i(c), cells.j(c)); };
+  const auto quanta = [&](int c) { return static_cast<Quanta>(massOf(c) * q.inverse); };
+  bool all = true;
+  const auto draw = [&](const Images& to, unsigned which) {
+    search_.start(cells, to, which, &b.openX, &b.openY, static_cast<int>(cells.count()));
+    Images found;
+    while (const unsigned at = search_.next(found)) {
+      Quanta given[4] = {};
+      for (int g = 0; g < 4; ++g) {
+        if (!(at >> g & 1)) continue;
+        // Of what two draw on each takes half, and of what two lack each brings half, be it one too much.
+        const Quanta share = sharing(to, at, g), lacks = (share - 1 - quanta(to[g])) / share;
+        given[g] = std::max<Quanta>(0, std::min(lacks, quanta(found[g]) / sharing(found, at, g)));
+      }
+      for (int g = 0; g < 4; ++g) {
+        if (given[g] == 0) continue;
+        const int x = cells.i(found[g]), y = cells.j(found[g]);
+        massOf(to[g]) += static_cast<float>(given[g]) * q.size;
+        mass(x, y) -= static_cast<float>(given[g]) * q.size;
+        value(x, y) = volume(x, y) > 0 ? mass(x, y) / volume(x, y) : 0.0f;
+        active.at(x / Activity::kStrip, y) = 1;
+      }
+      for (int g = 0; g < 4; ++g)
+        if ((which >> g & 1) && massOf(to[g]) >= 0) search_.stop(g);
+    }
+    for (int g = 0; g < 4; ++g) {
+      if (!(which >> g & 1)) continue;
+      const int i = cells.i(to[g]), j = cells.j(to[g]);
+      all &= mass(i, j) >= 0;
+      value(i, j) = mass(i, j) < 0    ? value(i, j)
+                    : mass(i, j) == 0 ? 0.0f
+                                      : mass(i, j) / std::max(volume(i, j), 1e-6f);
+    }
+  };
+  orbits_.each(cells, lacking_, [&](int c) { return massOf(c) < 0; }, draw);
   return all;
 }
 

@@ -7,11 +7,12 @@
 // and all cells of a round act at once: no order matters, so mirror images stay such.
 //
 // And keeps it above the floor: where more was taken from a cell than it held (a solid that jumps over many
-// cells in a step), the nearest cells that can be reached from it give it back.
+// cells in a step), the nearest cells that can be reached from it give it back; mirror images draw at once.
 #pragma once
 #include <cstdint>
 #include <vector>
 
+#include "fluid/mirror_search.h"
 #include "fluid/smoke_cells.h"
 #include "fluid/sweep.h"
 
@@ -29,11 +30,11 @@ class MassSpread {
                                    float highest, Quantum quantum, Field& mass, Field& value,
                                    Activity& active);
   /// Fills cells with less than nothing up to nothing. Returns whether all could be.
-  bool fill(const SmokeCells& cells, const Boundary& boundary, const Field& volume, Field& mass, Field& value,
-            Activity& active);
+  bool fill(const SmokeCells& cells, const Boundary& boundary, const Field& volume, Quantum quantum,
+            Field& mass, Field& value, Activity& active);
   std::size_t bytes() const {
-    return (seen_.capacity() + queue_.capacity() + place_.capacity()) * sizeof(int) +
-           full_.capacity() * sizeof(Full) + offers_.capacity() * sizeof(Offer);
+    return (lacking_.capacity() + place_.capacity()) * sizeof(int) + full_.capacity() * sizeof(Full) +
+           offers_.capacity() * sizeof(Offer) + search_.bytes() + orbits_.bytes();
   }
 
  private:
@@ -51,8 +52,9 @@ class MassSpread {
   template <class Room>
   bool oneRound(const SmokeCells& cells, const Boundary& boundary, Room&& room);
 
-  std::vector<int> seen_, queue_;
-  int search_ = 0;
+  std::vector<int> lacking_;
+  MirrorSearch search_;
+  MirrorOrbits orbits_;
   std::vector<int> place_;  // by cell: its place in full_, -1 between runs
   std::vector<Full> full_;
   std::vector<Offer> offers_;

@@ -72,17 +72,15 @@ int TransferPlan::nearestOpen(const SmokeCells& cells, const SmokeGeometry& geom
   return -1;
 }
 
-// Moves volumes at once. Those that are equal for mirror images are added in one order.
-void TransferPlan::shift(const Images& from, const Images& to, const Amounts& volume, unsigned which) {
+// Moves volumes from cell to cell at once: those that are equal for mirror images are added in one order.
+void TransferPlan::shift(const Images& from, const Images& to, const Amounts& volume, unsigned which,
+                         std::vector<float>& amounts) {
   int order[4] = {0, 1, 2, 3};
   std::stable_sort(order, order + 4, [&](int a, int b) { return volume[a] > volume[b]; });
   for (int g : order) {
     if (!has(which, g)) continue;
-    content_[from[g]] -= volume[g];
-    excess_[from[g]] -= volume[g];
-    if (to[g] < 0) continue;
-    content_[to[g]] += volume[g];
-    excess_[to[g]] += volume[g];
+    amounts[from[g]] -= volume[g];
+    if (to[g] >= 0) amounts[to[g]] += volume[g];
   }
 }
 
@@ -103,7 +101,8 @@ void TransferPlan::give(const Images& from, const Images& to, const Amounts& vol
   for (int g = 0; g < 4; ++g)
     if (has(which, g)) handed_.push_back({from[g], to[g], std::min(1.0f, volume[g] / content_[from[g]])});
   endGroup(handed_, begin);
-  shift(from, to, volume, which);
+  shift(from, to, volume, which, content_);
+  shift(from, to, volume, which, excess_);
 }
 
 // What is left in cells, be it none, goes to the cells `to`; what is left of the smoke must not stay.
@@ -124,7 +123,8 @@ void TransferPlan::giveRest(const Images& from, unsigned which, const Images& to
     handed_.push_back({from[g], to[g], 1.0f, 1, true});
   }
   endGroup(handed_, begin);
-  shift(from, to, rest, giving);
+  shift(from, to, rest, giving, content_);
+  shift(from, to, rest, giving, excess_);
 }
 
 void TransferPlan::handOver(const SmokeCells& cells, const std::vector<int>& cut, const RegionMatch& match,
@@ -236,21 +236,35 @@ void TransferPlan::handOverFrom(const SmokeCells& cells, const Images& from, uns
   giveRest(from, which, nearest);
 }
 
-// Adds a flow along the path that an image's search, which began at `from`, took to `to`.
-void TransferPlan::route(const SmokeCells& cells, int image, int from, int to, float volume, Field& courantX,
-                         Field& courantY) {
+// Notes a flow along the path that an image's search, which began at `from`, took to `to`.
+void TransferPlan::route(const SmokeCells& cells, int image, int from, int to, float volume) {
   for (int cell = to; cell != from;) {
-    const int face = search_.cameThrough(image, cell), last = search_.cellBefore(cells, image, cell),
-              i = cells.i(last), j = cells.j(last);
-    float& flow = SmokeCells::atFace(courantX, courantY, i, j, face);
-    flow += outwards(face) * volume;
-    // The two copies of a periodic side's faces agree.
-    if (cells.periodicX && face == 0 && i == 0) courantX(cells.nx, j) = flow;
-    if (cells.periodicX && face == 1 && i == cells.nx - 1) courantX(0, j) = flow;
-    if (cells.periodicY && face == 2 && j == 0) courantY(i, cells.ny) = flow;
-    if (cells.periodicY && face == 3 && j == cells.ny - 1) courantY(i, 0) = flow;
+    const int face = search_.cameThrough(image, cell), last = search_.cellBefore(cells, image, cell);
+    int i = cells.i(last) + (face == 1), j = cells.j(last) + (face == 3);
+    if (cells.periodicX && i == cells.nx) i = 0;
+    if (cells.periodicY && j == cells.ny) j = 0;
+    flows_.push_back({face < 2, i, j, outwards(face) * volume});
     cell = last;
   }
+}
+
+// Adds the flows that are noted, those of one face at once: in the mirror image they may come in another order.
+void TransferPlan::addFlows(const SmokeCells& cells, Field& courantX, Field& courantY) {
+  std::sort(flows_.begin(), flows_.end(), [](const AddedFlow& a, const AddedFlow& b) {
+    return a.x != b.x ? a.x : a.j != b.j ? a.j < b.j : a.i < b.i;
+  });
+  for (std::size_t k = 0; k < flows_.size();) {
+    const AddedFlow& face = flows_[k];
+    float& flow = face.x ? courantX(face.i, face.j) : courantY(face.i, face.j);
+    double sum = flow;
+    for (; k < flows_.size() && flows_[k].x == face.x && flows_[k].i == face.i && flows_[k].j == face.j; ++k)
+      sum += flows_[k].volume;
+    flow = static_cast<float>(sum);
+    // The two copies of a periodic side's faces agree.
+    if (cells.periodicX && face.x && face.i == 0) courantX(cells.nx, face.j) = flow;
+    if (cells.periodicY && !face.x && face.j == 0) courantY(face.i, cells.ny) = flow;
+  }
+  flows_.clear();
 }
 
 // Lets open cells that would end with too much flow into the nearest that lack some, and cells that would end
@@ -259,16 +273,14 @@ void TransferPlan::correctFlows(const SmokeCells& cells, const std::vector<int>&
                                 const SmokeGeometry& after, Field& courantX, Field& courantY) {
   const auto open = [&](int c) { return volumeOf(cells, after, c); };
   Images found;
-  // Flows of the images at once; the larger first, so that those of mirror images add up in one order.
   const auto routeAll = [&](const Images& from, const Amounts& moved, unsigned which, float sign) {
-    int order[4] = {0, 1, 2, 3};
-    std::stable_sort(order, order + 4, [&](int a, int b) { return moved[a] > moved[b]; });
-    for (int g : order) {
-      if (!has(which, g)) continue;
-      route(cells, g, from[g], found[g], sign * moved[g], courantX, courantY);
-      excess_[from[g]] -= sign * moved[g];
-      excess_[found[g]] += sign * moved[g];
+    Amounts volume;
+    for (int g = 0; g < 4; ++g) {
+      volume[g] = sign * moved[g];
+      if (has(which, g)) route(cells, g, from[g], found[g], volume[g]);
     }
+    addFlows(cells, courantX, courantY);
+    shift(from, found, volume, which, excess_);
   };
   ++barrenNow_;
   for (const int reach : kReachOfFlows) {
@@ -348,7 +360,8 @@ void TransferPlan::send(const SmokeCells& cells, const Images& from, const Image
   for (int g = 0; g < 4; ++g)
     if (has(which, g)) forPath(g, [&](int c) { drawing_[c] = 0; });
   if (which & (which - 1)) endGroup(exchanged_, begin);
-  shift(from, to, volume, which);
+  shift(from, to, volume, which, content_);
+  shift(from, to, volume, which, excess_);
 }
 
 void TransferPlan::exchange(const SmokeCells& cells, const std::vector<int>& nodes,

@@ -65,6 +65,11 @@ class TransferPlan {
 
  private:
   using Amounts = std::array<float, 4>;  // by image
+  struct AddedFlow {
+    bool x;  // through x-face (i, j), else through the y-face
+    int i, j;
+    float volume;
+  };
 
   void reserve(const SmokeCells& cells);
   void start(const SmokeCells& cells, const Images& from, unsigned which, const SmokeGeometry* through,
@@ -75,9 +80,10 @@ class TransferPlan {
   void give(const Images& from, const Images& to, const Amounts& volume, unsigned which);
   void send(const SmokeCells& cells, const Images& from, const Images& to, const Amounts& volume,
             unsigned which);
-  void shift(const Images& from, const Images& to, const Amounts& volume, unsigned which);
-  void route(const SmokeCells& cells, int image, int from, int to, float volume, Field& courantX,
-             Field& courantY);
+  static void shift(const Images& from, const Images& to, const Amounts& volume, unsigned which,
+                    std::vector<float>& amounts);
+  void route(const SmokeCells& cells, int image, int from, int to, float volume);
+  void addFlows(const SmokeCells& cells, Field& courantX, Field& courantY);
   void correctFlows(const SmokeCells& cells, const std::vector<int>& cut, const SmokeGeometry& after,
                     Field& courantX, Field& courantY);
   void endGroup(std::vector<SmokeTransfer>& transfers, std::size_t begin);
@@ -88,6 +94,7 @@ class TransferPlan {
   MirrorSearch search_;
   MirrorOrbits orbits_;
   std::vector<int> path_, drawnOn_;
+  std::vector<AddedFlow> flows_;
   std::vector<std::uint8_t> drawing_;  // by cell; 0 between uses
   std::vector<int> barren_;            // by cell: the last hand-over in which nothing was to be found around it
   int barrenNow_ = 0;
