@@ -103,6 +103,14 @@ void Builder::classify(Level& level) {
       disturb(i, level.joinY.begin(level.joinY.middle));
       disturb(i, level.joinY.begin(level.joinY.middle + 1) - 1);
     }
+  // So do neighbours of one colour where there is no side that the error there would be small against: drifting
+  // vortices of 128 cells came out five times less exact without.
+  if (level.hasSeamColumns())
+    for (int j = 0; j < level.ny; ++j)
+      for (const int i : {0, level.swapsAt - 1, level.swapsAt, level.nx - 1}) disturb(i, j);
+  if (level.hasSeamRows())
+    for (int i = 0; i < level.nx; ++i)
+      for (const int j : {0, level.swapsAtRow - 1, level.swapsAtRow, level.ny - 1}) disturb(i, j);
   level.runs.clear();
   level.bandRuns.clear();
   for (int j = 0; j < level.ny; ++j) {
