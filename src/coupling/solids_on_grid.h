@@ -65,10 +65,12 @@ class SolidsOnGrid {
 
  private:
   void placeCopies(const std::vector<MovingSolid>& solids, const Boundary& boundary);
+  void findPartners(const std::vector<MovingSolid>& solids);
 
   GridCover cover_;
   std::vector<Copy> copies_;
-  std::vector<SolidOutline> outlines_;  // of the copies
+  std::vector<SolidOutline> outlines_;      // of the copies
+  std::vector<std::vector<int>> partners_;  // of each copy: those that it may overlap and that move otherwise
   FaceWeights weightsU_, weightsV_;
   std::vector<CutLink> sorted_;
   std::vector<int> rowStart_;

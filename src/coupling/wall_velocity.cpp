@@ -7,8 +7,8 @@ namespace smokebox {
 
 namespace {
 
-/// The nearest whole multiple of 2^-36 of `largest`: where a sum of things that large all but adds up to 0, the
-/// rounding of positions would show, and part mirror images.
+/// The nearest whole multiple of 2^-36 of `largest`: where a sum of things that large all but adds up to 0,
+/// the rounding of positions would show, and part mirror images.
 double rounded(double value, double largest) {
   if (!(largest > 1e-200)) return value;
   const double quantum = std::ldexp(1.0, std::ilogb(largest) - 36);
@@ -17,17 +17,43 @@ double rounded(double value, double largest) {
 
 }  // namespace
 
+// Inside the copy, or next to its surface.
+bool CoveredBy::covers(int copy, Vec2 p) const {
+  const double near = 1e-4 * h;
+  const Vec2 at = p - copies[copy].shift;
+  bool inside = false;
+  for (const Outline& outline : solids[copies[copy].solid].outlines)
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const Vec2 a = outline[k] - at, along = outline[k + 1 < outline.size() ? k + 1 : 0] - outline[k];
+      const double size = dot(along, along), t = size > 0 ? std::clamp(-dot(a, along) / size, 0.0, 1.0) : 0;
+      const Vec2 away = a + t * along;
+      if (dot(away, away) < near * near) return true;
+      if ((a.y > 0) != (a.y + along.y > 0) && a.x - a.y / along.y * along.x > 0) inside = !inside;
+    }
+  return inside;
+}
+
 Vec2 CoveredBy::velocityAt(int copy, Vec2 p) const {
-  const MovingSolid& solid = solids[copies[copy].solid];
-  const Vec2 at = p - copies[copy].shift, turns = solid.spin * (at - solid.origin);
-  const Vec2 velocity = solid.velocityAt(at);
-  const double largest =
-      std::max({std::fabs(solid.velocity.x), std::fabs(solid.velocity.y), std::fabs(turns.x),
-                std::fabs(turns.y), std::fabs(solid.spin) * h});
-  return {rounded(velocity.x, largest), rounded(velocity.y, largest)};
+  Vec2 sum;
+  double largest = 0;
+  int count = 0;
+  const auto add = [&](int k) {
+    const MovingSolid& solid = solids[copies[k].solid];
+    const Vec2 at = p - copies[k].shift, turns = solid.spin * (at - solid.origin);
+    sum = sum + solid.velocityAt(at);
+    largest = std::max({largest, std::fabs(solid.velocity.x), std::fabs(solid.velocity.y), std::fabs(turns.x),
+                        std::fabs(turns.y), std::fabs(solid.spin) * h});
+    ++count;
+  };
+  add(copy);
+  for (const int k : partners[copy])
+    if (covers(k, p)) add(k);
+  return {rounded(sum.x / count, largest), rounded(sum.y / count, largest)};
 }
 
 namespace {
+
+constexpr double kAlike = 1e-9;  // of h
 
 /// One kind of faces at a time; coordinates are swapped so that "along" is the direction of the face's line.
 class FaceVelocities {
@@ -49,8 +75,8 @@ class FaceVelocities {
     for (const ShutPart& part : by_.geometry.shut) {
       if (part.xFace != xFaces_) continue;
       const int line = xFaces_ ? part.i : part.j, face = xFaces_ ? part.j : part.i;
-      addPart(line, face, part.lo, part.hi, part.solid);
-      if (joined && line == 0) addPart(lines_ - 1, face, part.lo, part.hi, part.solid);
+      addPart(line, face, part.lo, part.hi, part.solid, part.other);
+      if (joined && line == 0) addPart(lines_ - 1, face, part.lo, part.hi, part.solid, part.other);
     }
   }
 
@@ -63,15 +89,19 @@ class FaceVelocities {
     const int first = std::max(0, static_cast<int>(std::floor(std::max(interval.lo, -h_) / h_)));
     for (int face = first; face < faces_ && face * h_ < interval.hi; ++face) {
       const double lo = std::max(interval.lo, face * h_), hi = std::min(interval.hi, (face + 1) * h_);
-      const double middle = 0.5 * (lo + hi);
-      const bool nearLo = middle - interval.lo <= interval.hi - middle;
-      if (hi > lo) addPart(line, face, lo, hi, nearLo ? interval.solidLo : interval.solidHi);
+      if (!(hi > lo)) continue;
+      const double beyond = (lo + hi) - (interval.lo + interval.hi);  // of the interval's middle, twice
+      addPart(line, face, lo, hi, beyond < kAlike * h_ ? interval.solidLo : interval.solidHi,
+              beyond > -kAlike * h_ ? interval.solidHi : interval.solidLo);
     }
   }
 
-  void addPart(int line, int face, double lo, double hi, int copy) {
+  /// Closed by a copy, or by two alike.
+  void addPart(int line, int face, double lo, double hi, int copy, int other) {
     const double middle = 0.5 * (lo + hi), across = line * h_;
-    const Vec2 velocity = by_.velocityAt(copy, xFaces_ ? Vec2{across, middle} : Vec2{middle, across});
+    const Vec2 place = xFaces_ ? Vec2{across, middle} : Vec2{middle, across};
+    Vec2 velocity = by_.velocityAt(copy, place);
+    if (other != copy) velocity = 0.5 * (velocity + by_.velocityAt(other, place));
     const double normal = xFaces_ ? velocity.x : velocity.y;
     float& wall = at(wall_, line, face);
     const double share = (hi - lo) / h_;
@@ -79,12 +109,12 @@ class FaceVelocities {
       wall = static_cast<float>(normal);
       return;
     }
-    float& place = at(covered_, line, face);
-    if (place == 0) {
+    float& slot = at(covered_, line, face);
+    if (slot == 0) {
       touched_.push_back(xFaces_ ? FaceSum{line, face} : FaceSum{face, line});
-      place = static_cast<float>(touched_.size());
+      slot = static_cast<float>(touched_.size());
     }
-    FaceSum& sum = touched_[static_cast<std::size_t>(place) - 1];
+    FaceSum& sum = touched_[static_cast<std::size_t>(slot) - 1];
     sum.share += share;
     sum.flux += share * normal;
     sum.fastest = std::max(sum.fastest, std::fabs(normal));

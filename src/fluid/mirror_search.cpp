@@ -35,7 +35,8 @@ bool MirrorSearch::reach(int g, int cell, int face) {
     walks_[cell] = 0;
   }
   if (walks_[cell] >> g & 1) return false;
-  walks_[cell] = static_cast<std::uint16_t>(walks_[cell] | 1u << g | static_cast<unsigned>(face) << (4 + 2 * g));
+  walks_[cell] =
+      static_cast<std::uint16_t>(walks_[cell] | 1u << g | static_cast<unsigned>(face) << (4 + 2 * g));
   walkers_[g].queue.push_back(cell);
   return true;
 }

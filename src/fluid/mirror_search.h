@@ -1,5 +1,5 @@
-// Searches from a cell, nearest cells first, that go from the cell's mirror images at once: a step of each, then
-// the next, so that what the searches do to the cells that they find leaves mirror images such.
+// Searches from a cell, nearest cells first, that go from the cell's mirror images at once: a step of each,
+// then the next, so that what the searches do to the cells that they find leaves mirror images such.
 //
 // An image is counted 0 (the cell itself), 1 left to right, 2 up to down, 3 both, about the middle of the
 // grid; its search looks at the faces of a cell in the mirrored order. On an axis two images are one cell,
@@ -74,8 +74,8 @@ class MirrorSearch {
 /// Takes the cells of a list with their images, each cell once.
 class MirrorOrbits {
  public:
-  /// body(images, which) for those cells of `list` for which wants(cell) is true when it is their turn; `which`
-  /// are the bits of the images for which it is.
+  /// body(images, which) for those cells of `list` for which wants(cell) is true when it is their turn;
+  /// `which` are the bits of the images for which it is.
   template <class Wants, class Body>
   void each(const SmokeCells& cells, const std::vector<int>& list, Wants&& wants, Body&& body) {
     done_.resize(cells.count(), 0);
@@ -85,7 +85,8 @@ class MirrorOrbits {
       if (done_[c] == pass_ || !wants(c)) continue;
       const Images images = imagesOf(cells, c);
       unsigned which = 0;
-      for (int g = 0; g < 4; ++g) which |= static_cast<unsigned>(done_[images[g]] != pass_ && wants(images[g])) << g;
+      for (int g = 0; g < 4; ++g)
+        which |= static_cast<unsigned>(done_[images[g]] != pass_ && wants(images[g])) << g;
       for (int g = 0; g < 4; ++g)
         if (which >> g & 1) done_[images[g]] = pass_;
       body(images, which);

@@ -14,8 +14,8 @@
 // A problem that is mirrored left to right (or up to down) has the mirrored solution to the bit, for any
 // number of columns and rows: colours and the joining of blocks are mirrored about the middle (see Level),
 // every unknown is a sum of what lies along x and of what lies along y whichever way it is stored, and so is
-// what a sweep along solids covers. Not so where an even number of blocks is split beside the middle, nor
-// across periodic sides, left to right for those on the left and right.
+// what a sweep along solids covers. Neighbours in the middle, and across a periodic seam, then have one
+// colour and are solved as one; on periodic levels these are swept with those along solids.
 //
 // All sweeps of a level run in one pass over its rows, each row as soon as its neighbours are ready; several
 // threads do so in bands of rows, each sweep a row further from the border than the last, and then what is
@@ -64,7 +64,8 @@ class Multigrid {
   bool shared(const multigrid::Level& level) const;
   /// Does the stages 0 to `stages` - 1 for all rows, each after the stage before of the rows beside it and
   /// before the stage after of them: sweep(s, j) for the stages from sweepsBegin to sweepsEnd - 1, once for
-  /// the two rows in the middle of mirrored colours, and then(s, j) for the others.
+  /// the two rows in the middle of mirrored colours (and by sweep itself for those of a seam), and then(s, j)
+  /// for the others.
   template <class Sweep, class Then>
   void inOrder(multigrid::Level& level, int sweepsBegin, int sweepsEnd, int stages, Sweep&& sweep,
                Then&& then);

@@ -103,8 +103,8 @@ void Builder::classify(Level& level) {
       disturb(i, level.joinY.begin(level.joinY.middle));
       disturb(i, level.joinY.begin(level.joinY.middle + 1) - 1);
     }
-  // So do neighbours of one colour where there is no side that the error there would be small against: drifting
-  // vortices of 128 cells came out five times less exact without.
+  // So do neighbours of one colour where there is no side that the error there would be small against:
+  // drifting vortices of 128 cells came out five times less exact without.
   if (level.hasSeamColumns())
     for (int j = 0; j < level.ny; ++j)
       for (const int i : {0, level.swapsAt - 1, level.swapsAt, level.nx - 1}) disturb(i, j);

@@ -344,10 +344,10 @@ inline void startRow(Level& level, int j) {
   level.wrapRow(x);
 }
 
-/// Two rows of one colour that are neighbours, in the middle of mirrored colours or across the seam: what they
-/// held before a sweep of one colour, and its end: each pair of cells above each other is solved as one, from
-/// what the sweep made of each with the old value of the other; and so are the four cells in the middle of
-/// the rows, all of one colour.
+/// Two rows of one colour that are neighbours, in the middle of mirrored colours or across the seam: what
+/// they held before a sweep of one colour, and its end: each pair of cells above each other is solved as one,
+/// from what the sweep made of each with the old value of the other; and so are the four cells in the middle
+/// of the rows, all of one colour.
 class RowPair {
  public:
   static RowPair middle(Level& level) { return RowPair(level, level.swapsAtRow - 1, level.swapsAtRow, 0); }
@@ -416,9 +416,9 @@ class RowPair {
     level_.wrapRow(above);
   }
 
-  /// The four cells 0 1 / 2 3 (below, above) in the middle, in a ring, from what Jacobi's step has made of each. Two that
-  /// are not linked are found by eliminating the other two, and those by eliminating these: mirror images do
-  /// the same.
+  /// The four cells 0 1 / 2 3 (below, above) in the middle, in a ring, from what Jacobi's step has made of
+  /// each. Two that are not linked are found by eliminating the other two, and those by eliminating these:
+  /// mirror images do the same.
   void solveFour(float* below, float* above, const float* wasBelow, const float* wasAbove) const {
     // Just off the diagonal, so that four cells without another link (then their sum is 0) can be solved.
     constexpr float kOff = 1 / (1 + 1.0f / 64);

@@ -80,8 +80,8 @@ struct Level {
   Joining joinX, joinY;  // to the next coarser level
   // The colours are mirrored about the middle of an even number of columns and about that of an even number
   // of rows (of an odd number they are so by themselves), so that a mirrored problem has the mirrored
-  // solution: from this column on, and from this row on; or from beyond the last. Neighbours in the middle, and
-  // across the seam of a periodic level, so have one colour: each pair is solved as one.
+  // solution: from this column on, and from this row on; or from beyond the last. Neighbours in the middle,
+  // and across the seam of a periodic level, so have one colour: each pair is solved as one.
   int swapsAt = 0, swapsAtRow = 0;
   double unit = 1;                        // edge of a whole block, in cells of the finest grid
   std::ptrdiff_t stride = 0, origin = 0;  // offset of block (i, j): origin + j stride + i

@@ -42,8 +42,7 @@ float PathsBesideSolids::vAt(Point p) const { return bilinear(v_, p.x - 0.5, p.y
 
 PathsBesideSolids::Point PathsBesideSolids::footOf(Point start) const {
   const float half = -0.5f * scale_;
-  const Point middle =
-      lastFluid(start, inWholeParts(half * uAt(start)), inWholeParts(half * vAt(start)));
+  const Point middle = lastFluid(start, inWholeParts(half * uAt(start)), inWholeParts(half * vAt(start)));
   return lastFluid(start, inWholeParts(-scale_ * uAt(middle)), inWholeParts(-scale_ * vAt(middle)));
 }
 
@@ -73,8 +72,8 @@ PathsBesideSolids::Point PathsBesideSolids::lastFluid(Point from, float byX, flo
       j += stepY;
     }
   }
-  return wrapped({from.x + inWholeParts(static_cast<float>(t * dx)),
-                  from.y + inWholeParts(static_cast<float>(t * dy))});
+  return wrapped(
+      {from.x + inWholeParts(static_cast<float>(t * dx)), from.y + inWholeParts(static_cast<float>(t * dy))});
 }
 
 /// Whether a path may cross the border of row j in column i, or, where it runs up a grid line, on either side

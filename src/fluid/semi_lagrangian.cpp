@@ -18,8 +18,8 @@ typedef float Quad __attribute__((vector_size(16), aligned(4), may_alias));
 
 inline Quad quadAt(const float* p) { return *reinterpret_cast<const Quad*>(p); }
 
-/// Catmull-Rom: b (-a b/2), b (1 + a - 3/2 a^2) with b = 1 - a, and those with a and b exchanged, so that 1 - a
-/// has the same weights the other way round.
+/// Catmull-Rom: b (-a b/2), b (1 + a - 3/2 a^2) with b = 1 - a, and those with a and b exchanged, so that 1 -
+/// a has the same weights the other way round.
 inline Quad weights(float a) {
   constexpr Quad c0 = {0, 1, 1, 0}, c1 = {-0.5f, 1, 1, -0.5f}, c2 = {0.5f, -1.5f, -1.5f, 0.5f};
   const float b = 1 - a;
@@ -30,8 +30,8 @@ inline Quad weights(float a) {
 inline Quad smaller(const Quad& a, const Quad& b) { return a < b ? a : b; }
 inline Quad larger(const Quad& a, const Quad& b) { return a > b ? a : b; }
 
-/// Between the 16 samples around p + (a, b), 0 <= a, b < 1, and within the range of the nearest four; on a line
-/// of samples within that of the nearest two.
+/// Between the 16 samples around p + (a, b), 0 <= a, b < 1, and within the range of the nearest four; on a
+/// line of samples within that of the nearest two.
 inline float limitedCubic(const float* p, std::ptrdiff_t stride, float a, float b) {
   const Quad wx = weights(a), wy = weights(b);
   const Quad r0 = quadAt(p - stride - 1), r1 = quadAt(p - 1), r2 = quadAt(p + stride - 1),

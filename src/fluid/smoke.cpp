@@ -179,9 +179,9 @@ void Smoke::Impl::move(int channel, const std::vector<SmokeTransfer>& transfers)
   }
 }
 
-// Gives back what was kept aside: to the cell, or where that has closed to one that is open near by (on an axis
-// to those that its images find), up to twice what it holds at the ceiling. What is too much there is spread,
-// or kept aside again.
+// Gives back what was kept aside: to the cell, or where that has closed to one that is open near by (on an
+// axis to those that its images find), up to twice what it holds at the ceiling. What is too much there is
+// spread, or kept aside again.
 void Smoke::Impl::release(int channel, const Boundary& b, float highest) {
   const SmokeCells& cells = volumes.cells();
   Channel& c = channels[channel];
@@ -196,11 +196,10 @@ void Smoke::Impl::release(int channel, const Boundary& b, float highest) {
     int count = 0;
     for (int g = 0; g < 4; ++g) {
       if ((g & 1 ? fromRight < 0 : fromRight > 0) || (g & 2 ? fromTop < 0 : fromTop > 0)) continue;
-      const int found =
-          open && t.region < 0
-              ? t.cell
-              : volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions}, t.cell,
-                                           t.region, g);
+      const int found = open && t.region < 0
+                            ? t.cell
+                            : volumes.plan().nearestOpen(cells, {&b.openX, &b.openY, &b.volume, &b.regions},
+                                                         t.cell, t.region, g);
       if (found >= 0 && std::find(to.begin(), to.end(), found) == to.end()) to[count++] = found;
     }
     const double share = t.mass / std::max(count, 1);
@@ -329,8 +328,8 @@ void Smoke::Impl::fillMargins(Channel& c, Axis axis) {
   }
 }
 
-// Shares the mass of each cluster out among its cells by their open area, as its volume has been. What rounding
-// leaves goes to the largest; where that has images in the cluster, they share it, half to even.
+// Shares the mass of each cluster out among its cells by their open area, as its volume has been. What
+// rounding leaves goes to the largest; where that has images in the cluster, they share it, half to even.
 void Smoke::Impl::endClusters(Channel& c, const Boundary& b) {
   const SmokeCells& cells = volumes.cells();
   const CellClusters& clusters = volumes.clusters();
@@ -474,7 +473,8 @@ void Smoke::Impl::end(int channel, const Boundary& b) {
   c.kept = aside ? std::max(c.kept, before) : 0;
   c.highest = std::max(c.highest, c.kept);
   if (c.highest > 0) c.highest = std::max(c.highest, c.highest + kBoundKept * (before - c.highest));
-  if (volumes.moved()) spread.fill(volumes.cells(), b, volumes.carried(), c.quantum, c.mass, c.value, c.active);
+  if (volumes.moved())
+    spread.fill(volumes.cells(), b, volumes.carried(), c.quantum, c.mass, c.value, c.active);
 }
 
 // No value above `highest`: what finds no room near by is kept aside.

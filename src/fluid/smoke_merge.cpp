@@ -29,7 +29,8 @@ struct Flow {
 }  // namespace
 
 std::size_t CellClusters::bytes() const {
-  return orbits_.bytes() + (link_.capacity() + cluster_.capacity() + nodes_.capacity() + members_.capacity() +
+  return orbits_.bytes() +
+         (link_.capacity() + cluster_.capacity() + nodes_.capacity() + members_.capacity() +
           first_.capacity() + linked_.capacity() + roots_.capacity()) *
              sizeof(int) +
          watched_.capacity() + (rootsX_.items.capacity() + rootsY_.items.capacity()) * sizeof(ClusterRoot);
@@ -262,7 +263,8 @@ int CellClusters::build(const SmokeCells& cells, const std::vector<int>& cut, co
     orbits_.each(cells, nodes_, isNode, tame);
     roots_.clear();
     for (int k = 0; k < this->count(); ++k) roots_.push_back(*begin(k));
-    orbits_.each(cells, roots_, [&](int c) { return cluster_[c] >= 0; }, tame);
+    orbits_.each(
+        cells, roots_, [&](int c) { return cluster_[c] >= 0; }, tame);
   }
   listRoots(cells);
   if (changed) return 0;

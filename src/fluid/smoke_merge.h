@@ -1,7 +1,7 @@
 // Cells that are too small for the step are merged with the neighbour behind their largest open face: a
 // cluster shares one value during the sweeps. Merged are cells with less than a quarter of their area open,
-// and cut cells out of which more than 95% of the volume would flow in one sweep. Mirror images are dealt with
-// at once and so make mirrored clusters.
+// and cut cells out of which more than 95% of the volume would flow in one sweep. Mirror images are dealt
+// with at once and so make mirrored clusters.
 #pragma once
 #include <cstdint>
 #include <vector>

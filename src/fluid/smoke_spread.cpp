@@ -168,7 +168,8 @@ bool MassSpread::fill(const SmokeCells& cells, const Boundary& b, const Field& v
                                       : mass(i, j) / std::max(volume(i, j), 1e-6f);
     }
   };
-  orbits_.each(cells, lacking_, [&](int c) { return massOf(c) < 0; }, draw);
+  orbits_.each(
+      cells, lacking_, [&](int c) { return massOf(c) < 0; }, draw);
   return all;
 }
 

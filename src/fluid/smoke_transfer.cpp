@@ -111,8 +111,7 @@ void TransferPlan::giveRest(const Images& from, unsigned which, const Images& to
   for (int g = 0; g < 4; ++g) {
     if (!has(which, g)) continue;
     bool other = false;
-    for (int k = 0; k < 4; ++k)
-      other |= k != g && has(which, k) && from[k] == from[g] && to[k] >= 0;
+    for (int k = 0; k < 4; ++k) other |= k != g && has(which, k) && from[k] == from[g] && to[k] >= 0;
     if (to[g] >= 0 || (!other && sharing(from, giving, g) == 0)) giving |= 1u << g;
   }
   Amounts rest = {};
@@ -214,8 +213,7 @@ void TransferPlan::handOverFrom(const SmokeCells& cells, const Images& from, uns
   for (const SmokeGeometry* through : {&before, static_cast<const SmokeGeometry*>(nullptr)}) {
     unsigned seeking = 0;
     for (int g = 0; g < 4; ++g)
-      seeking |=
-          static_cast<unsigned>(has(which, g) && nearest[g] < 0 && (through || region[g] >= 0)) << g;
+      seeking |= static_cast<unsigned>(has(which, g) && nearest[g] < 0 && (through || region[g] >= 0)) << g;
     if (!seeking) continue;
     start(cells, from, seeking, through, kReachOfClosed);
     while (const unsigned at = search_.next(found))
@@ -248,7 +246,8 @@ void TransferPlan::route(const SmokeCells& cells, int image, int from, int to, f
   }
 }
 
-// Adds the flows that are noted, those of one face at once: in the mirror image they may come in another order.
+// Adds the flows that are noted, those of one face at once: in the mirror image they may come in another
+// order.
 void TransferPlan::addFlows(const SmokeCells& cells, Field& courantX, Field& courantY) {
   std::sort(flows_.begin(), flows_.end(), [](const AddedFlow& a, const AddedFlow& b) {
     return a.x != b.x ? a.x : a.j != b.j ? a.j < b.j : a.i < b.i;

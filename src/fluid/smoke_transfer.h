@@ -27,11 +27,11 @@
 namespace smokebox {
 
 struct SmokeTransfer {
-  int from = 0, to = 0;     // to = -1: no open cell in reach, the smoke is kept aside
-  float share = 1;          // of the smoke that is in `from` when it is the turn of this transfer's group
-  std::uint8_t drawing = 1; // how many of its group have the same `from`
-  bool all = false;         // these leave nothing there
-  bool grouped = false;     // the next one is of the same group: at once
+  int from = 0, to = 0;      // to = -1: no open cell in reach, the smoke is kept aside
+  float share = 1;           // of the smoke that is in `from` when it is the turn of this transfer's group
+  std::uint8_t drawing = 1;  // how many of its group have the same `from`
+  bool all = false;          // these leave nothing there
+  bool grouped = false;      // the next one is of the same group: at once
 };
 
 struct SmokeGeometry {
@@ -61,7 +61,8 @@ class TransferPlan {
 
   /// Nearest open cell by steps between neighbours, whatever lies between, in a region (-1: in any), as a
   /// mirror image of the cell would find it; -1 if there is none in reach.
-  int nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region, int image = 0);
+  int nearestOpen(const SmokeCells& cells, const SmokeGeometry& geometry, int from, int region,
+                  int image = 0);
 
  private:
   using Amounts = std::array<float, 4>;  // by image
@@ -96,7 +97,7 @@ class TransferPlan {
   std::vector<int> path_, drawnOn_;
   std::vector<AddedFlow> flows_;
   std::vector<std::uint8_t> drawing_;  // by cell; 0 between uses
-  std::vector<int> barren_;            // by cell: the last hand-over in which nothing was to be found around it
+  std::vector<int> barren_;  // by cell: the last hand-over in which nothing was to be found around it
   int barrenNow_ = 0;
 };
 

@@ -68,8 +68,8 @@ class CellCut {
     }
     traceParts();
     // In whole parts of a cell: slivers, which are differences of larger areas, keep no rounding of those.
-    volume =
-        kept_ < 0 ? 0.0f : static_cast<float>(std::nearbyint(std::clamp(keptArea_, 0.0, 1.0) * kFine) / kFine);
+    volume = kept_ < 0 ? 0.0f
+                       : static_cast<float>(std::nearbyint(std::clamp(keptArea_, 0.0, 1.0) * kFine) / kFine);
     if (parts_ > 1 || kept_ < 0) shutTheOthers();
   }
 
@@ -237,13 +237,15 @@ class CellCut {
   void shutTheOthers() {
     for (int k = 0, n = static_cast<int>(work_.ends.size()); k < n; ++k) {
       if (!work_.ends[k].entry || work_.part[k] == kept_) continue;
+      const int end = follower(k);
       const int solid = work_.crossings[work_.pieces[work_.ends[k].piece].entry].solid;
-      alongPerimeter(k, follower(k),
-                     [&](int side, Vec2 from, Vec2 to, bool) { shutFace(side, from, to, solid); });
+      const int other = work_.crossings[work_.pieces[work_.ends[end].piece].exit].solid;
+      alongPerimeter(k, end,
+                     [&](int side, Vec2 from, Vec2 to, bool) { shutFace(side, from, to, solid, other); });
     }
   }
 
-  void shutFace(int side, Vec2 from, Vec2 to, int solid) {
+  void shutFace(int side, Vec2 from, Vec2 to, int solid, int other) {
     ShutPart part;
     part.xFace = side == 1 || side == 3;
     part.i = i_ + (side == 1);
@@ -252,6 +254,7 @@ class CellCut {
     part.lo = std::min(a, b);
     part.hi = std::max(a, b);
     part.solid = solid;
+    part.other = other;
     if (part.hi > part.lo) cover_.shut.push_back(part);
   }
 

@@ -217,8 +217,14 @@ void settleShutParts(const Grid& grid, JoinedSides joined, GridCover& cover) {
   std::size_t kept = 0;
   for (const ShutPart& part : cover.shut) {
     ShutPart next = part;
-    if (kept > 0 && place(cover.shut[kept - 1]) == place(part))
-      next.lo = std::max(next.lo, cover.shut[kept - 1].hi);
+    if (kept > 0 && place(cover.shut[kept - 1]) == place(part)) {
+      ShutPart& last = cover.shut[kept - 1];
+      const double near = 2 * kGrowth * grid.h;
+      if (std::fabs(last.lo - part.lo) < near && std::fabs(last.hi - part.hi) < near &&
+          last.other == last.solid)
+        last.other = part.solid;
+      next.lo = std::max(next.lo, last.hi);
+    }
     if (next.hi - next.lo > 1e-9 * grid.h) cover.shut[kept++] = next;
   }
   cover.shut.resize(kept);

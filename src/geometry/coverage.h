@@ -41,7 +41,8 @@ struct ShutPart {
   bool xFace = true;
   int i = 0, j = 0;
   double lo = 0, hi = 0;  // metres along the face's line
-  int solid = -1;         // whose surface cuts the cell
+  int solid = -1,
+      other = -1;  // whose surface cuts the cell: where it begins, where it ends; or in either cell
 };
 
 struct GridCover {

@@ -1,5 +1,6 @@
 // A mirrored problem has the mirrored solution at any number of cells: odd ones, where the axis runs through
-// the middle of cells, and those whose halves, quarters .. are odd.
+// the middle of cells, and those whose halves, quarters .. are odd; whatever stands or moves on the axis or
+// beside it, and across periodic sides.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +16,8 @@ namespace {
 struct Obstacle {
   const char* shape;  // as upright
   double across, along, angle = 0, spin = 0;
+  // Expressions in t, added to the place: away from the axis, and along it.
+  const char *moves = nullptr, *rises = "0";
 };
 
 /// A plume of smoke against what stands on the axis, or in pairs beside it. Lengths are for a box of width 1.
@@ -24,6 +27,7 @@ struct Case {
   std::vector<Obstacle> obstacles;
   const char *sides = "no-slip", *end = "open";  // walls along the axis, and where the plume goes to
   const char* step = "1/100";
+  bool free = false;  // bodies, not solids
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name << ' ' << c.across << " x " << c.along; }
@@ -44,14 +48,23 @@ std::string sceneOf(const Case& c, bool upright) {
   scene += "gravity: " + pair(0, -9.81) + "\nfluid: {viscosity: 1e-4, vorticity: 0.3}\n";
   scene += "smoke: {buoyancy: 2, sources: [{shape: {circle: {center: " + pair(0.5, 0.25) +
            ", radius: 0.1}}, rate: 8, velocity: " + pair(0, 0.5) + "}]}\n";
-  scene += "solids:\n";
+  scene += c.free ? "bodies:\n" : "solids:\n";
   for (const Obstacle& o : c.obstacles)
     for (int side = o.across == 0 ? 1 : -1; side <= 1; side += 2) {
       const int turn = upright ? side : -side;
       const double angle = upright ? side * o.angle : 90 - side * o.angle;
       scene += "  - {shape: " + std::string(o.shape) + ", position: " + pair(0.5 + side * o.across, o.along) +
-               ", angle: " + std::to_string(angle) +
-               (o.spin != 0 ? ", motion: {spin: " + std::to_string(turn * o.spin) + "}}\n" : "}\n");
+               ", angle: " + std::to_string(angle);
+      if (o.spin != 0 && !c.free) scene += ", motion: {spin: " + std::to_string(turn * o.spin) + "}";
+      if (o.spin != 0 && c.free) scene += ", spin: " + std::to_string(turn * o.spin);
+      if (o.moves) {
+        const std::string across = std::to_string(0.5 + side * o.across) + "+(" + std::to_string(side) +
+                                   ")*(" + o.moves + ")",
+                          along = std::to_string(o.along) + "+" + o.rises;
+        scene += std::string(", motion: {expression: {") + (upright ? "x" : "y") + ": \"" + across + "\", " +
+                 (upright ? "y" : "x") + ": \"" + along + "\"}}";
+      }
+      scene += "}\n";
     }
   return scene + "output: {fps: 1}\ntime: {duration: 10, step: " + c.step + "}\n";
 }
@@ -112,6 +125,8 @@ constexpr const char* kSmallDisk = "{circle: {radius: 0.06}}";
 constexpr const char* kPlate = "{box: {size: [0.4, 0.004]}}";
 constexpr const char* kUprightPlate = "{box: {size: [0.004, 0.4]}}";
 constexpr const char* kBlade = "{box: {size: [0.3, 0.03]}}";
+constexpr const char* kBlock = "{box: {size: [0.15, 0.2]}}";
+constexpr const char* kSheet = "{box: {size: [0.3, 0.004]}}";
 
 std::vector<Case> sizes() {
   std::vector<Case> cases;
@@ -127,15 +142,46 @@ INSTANTIATE_TEST_SUITE_P(
     Solids, MirrorSizes,
     testing::Values(Case{"two disks", 101, 131, {{kSmallDisk, 0.2, 0.7}}},
                     Case{"a plate across", 75, 100, {{kPlate, 0, 0.703}}},
+                    Case{"a plate across", 64, 100, {{kPlate, 0, 0.703}}},
+                    Case{"a plate that halves its cells", 75, 100, {{kUprightPlate, 0, 0.803}}},
+                    Case{"plates that halve their cells", 75, 100, {{kUprightPlate, 0.2, 0.703}}},
+                    Case{"leaning plates", 96, 100, {{kPlate, 0.2, 0.7, 50}}},
+                    Case{"leaning plates", 128, 128, {{kPlate, 0.2, 0.7, 50}}},
                     Case{"a plate along", 100, 128, {{kUprightPlate, 0, 0.803}}},
                     Case{"a roof", 100, 131, {{kBlade, 0.12, 0.7, -30}, {kSmallDisk, 0, 1}}}));
 
-INSTANTIATE_TEST_SUITE_P(Walls, MirrorSizes,
-                         testing::Values(Case{"closed", 96, 100, {{kDisk, 0, 0.7}}, "slip", "slip"},
-                                         Case{"closed", 75, 75, {{kDisk, 0, 0.7}}, "slip", "slip"},
-                                         Case{"open", 100, 128, {{kDisk, 0, 0.7}}, "open", "open", "1/250"},
-                                         Case{"open", 101, 128, {{kDisk, 0, 0.7}}, "open", "open", "1/250"},
-                                         Case{"periodic", 75, 128, {{kDisk, 0, 0.7}}, "periodic", "slip"}));
+INSTANTIATE_TEST_SUITE_P(
+    Moving, MirrorSizes,
+    testing::Values(
+        Case{"fans", 64, 80, {{kBlade, 0.2, 0.7, 10, 180}}},
+        Case{"fans", 37, 53, {{kBlade, 0.2, 0.7, 10, 180}}},
+        Case{"fans", 75, 100, {{kBlade, 0.2, 0.7, 10, 180}}},
+        Case{"thin fans", 75, 100, {{kSheet, 0.2, 0.7, 10, 180}}},
+        Case{"blocks that meet", 64, 80, {{kBlock, 0.15, 0.7, 0, 0, "0.075*sin(4*t)"}}},
+        Case{"blocks that meet", 37, 53, {{kBlock, 0.15, 0.7, 0, 0, "0.075*sin(4*t)"}}},
+        Case{"disks in a closed box",
+             37,
+             53,
+             {{kSmallDisk, 0.2, 0.6, 0, 0, "0.1*sin(3*t)", "0.1*t"}},
+             "slip",
+             "slip"},
+        Case{"plates that pass over the smoke", 75, 80, {{kUprightPlate, 0.2, 0.6, 0, 0, "0.19*sin(12*t)"}}},
+        Case{"a press", 64, 80, {{kPlate, 0, 0.7, 0, 0, "0", "0.15*sin(3*t)"}}},
+        Case{"a press", 100, 131, {{kPlate, 0, 0.7, 0, 0, "0", "0.15*sin(3*t)"}}},
+        Case{"a disk up and down", 37, 53, {{kDisk, 0, 0.7, 0, 0, "0", "0.15*sin(3*t)"}}},
+        Case{"steps of many cells", 64, 80, {{kBlock, 0.25, 0.7, 0, 0, "0.14*sin(20*t)"}}},
+        Case{"free disks", 64, 80, {{kSmallDisk, 0.2, 0.7}}, "no-slip", "open", "1/100", true}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Walls, MirrorSizes,
+    testing::Values(Case{"closed", 96, 100, {{kDisk, 0, 0.7}}, "slip", "slip"},
+                    Case{"closed", 75, 75, {{kDisk, 0, 0.7}}, "slip", "slip"},
+                    Case{"open", 100, 128, {{kDisk, 0, 0.7}}, "open", "open", "1/250"},
+                    Case{"open", 101, 128, {{kDisk, 0, 0.7}}, "open", "open", "1/250"},
+                    Case{"steps of many cells", 64, 80, {{kDisk, 0, 0.7}}, "open", "open", "1/8"},
+                    Case{"periodic", 64, 96, {{kDisk, 0, 0.7}}, "periodic"},
+                    Case{"periodic", 100, 90, {{kBlade, 0.25, 0.6, 10, 180}}, "periodic", "slip"},
+                    Case{"periodic", 75, 128, {{kDisk, 0, 0.7}}, "periodic", "slip"}));
 
 }  // namespace
 }  // namespace smokebox
