@@ -47,9 +47,17 @@ struct Extent {
 };
 Extent extentOf(const BodyShape& shape);
 
+/// What a step asks of a body's BodyDef for each pair, side by side.
+struct Surface {
+  double bounce = 0, friction = 0.5;
+  double gravityScale = 1;
+  bool isDriven = false;  // has no mass: nothing moves it but moveTo()
+};
+
 struct Bodies {
   std::vector<BodyDef> def;
   std::vector<Extent> extent;
+  std::vector<Surface> surface;  // of def, as of the step's start
   std::vector<Motion> velocity;  // now
   std::vector<Motion> moved;     // since the step began
   std::vector<InverseMass> inverse;
@@ -64,6 +72,11 @@ struct Bodies {
   bool areJoined(int a, int b) const {
     const std::pair<int, int> pair = std::minmax(a, b);
     return !joined.empty() && std::binary_search(joined.begin(), joined.end(), pair);
+  }
+  void takeSurfaces() {
+    surface.resize(def.size());
+    for (std::size_t b = 0; b < def.size(); ++b)
+      surface[b] = {def[b].bounce, def[b].friction, def[b].gravityScale, def[b].mass <= 0};
   }
   int count() const { return static_cast<int>(def.size()); }
   bool moves(int body) const { return inverse[body].mass > 0; }

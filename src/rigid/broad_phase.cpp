@@ -42,7 +42,8 @@ bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Ve
   const Vec2 way = dt * v.linear();
   box = joined(box, shifted(box, later));
   box = joined(box, shifted(box, way));
-  if (bodies.moves(body)) box = joined(box, shifted(box, dt * dt * bodies.def[body].gravityScale * gravity));
+  if (bodies.moves(body))
+    box = joined(box, shifted(box, dt * dt * bodies.surface[body].gravityScale * gravity));
   if (listed_[body] && fat_[body].holds(box)) return false;
   // Along its way some more: what flies on does not ask for a new box in every step.
   const double ahead = std::min(kStepsAhead, 0.5 * shape.reach / (length(way) + 1e-12));

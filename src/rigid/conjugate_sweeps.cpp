@@ -23,7 +23,7 @@ void eachImpulse(ContactBlocks& blocks, std::vector<Contact>& spare, std::vector
 void ConjugateSweeps::remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
                                std::vector<Contact>& lively) {
   impulses_.clear();
-  eachImpulse(blocks, spare, lively, [&](const double* impulse, const double*, int count) {
+  eachImpulse(blocks, spare, lively, [&](const double* impulse, const auto*, int count) {
     impulses_.insert(impulses_.end(), impulse, impulse + count);
   });
   velocities_ = bodies.velocity;
@@ -34,10 +34,10 @@ void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::ve
   // The squares of the changes over the effective masses: energies, whatever the masses are.
   double size = 0;
   std::size_t at = 0;
-  eachImpulse(blocks, spare, lively, [&](const double* impulse, const double* mass, int count) {
+  eachImpulse(blocks, spare, lively, [&](const double* impulse, const auto* mass, int count) {
     for (int l = 0; l < count; ++l) {
       const double change = impulse[l] - impulses_[at++];
-      if (mass[l] > 0) size += change * change / mass[l];
+      if (mass[l] > 0) size += change * change / static_cast<double>(mass[l]);
     }
   });
   const bool goesOn = known_ && size_ > 0 && size <= size_;
@@ -49,7 +49,7 @@ void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::ve
     std::fill(turnedTo_.begin(), turnedTo_.end(), Motion{});
   }
   at = 0;
-  eachImpulse(blocks, spare, lively, [&](double* impulse, const double*, int count) {
+  eachImpulse(blocks, spare, lively, [&](double* impulse, const auto*, int count) {
     for (int l = 0; l < count; ++l, ++at) {
       const double change = impulse[l] - impulses_[at], more = share * direction_[at];
       impulse[l] += more;

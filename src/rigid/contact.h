@@ -25,6 +25,7 @@ struct Contact {
   double friction = 0, bounce = 0;
   double approach = 0;  // fastest at which its points met in this step, m/s
   bool struck = false;  // had an impact in this sub-step
+  double change = 0;    // of a relative velocity in the last sweep, m/s
   double total = 0;     // N s along the normal in this step, impacts too
   double response[3] = {0, 0,
                         0};  // of the points' parting speeds to impulses: 0 to 0, each to the other, 1 to 1

@@ -8,6 +8,7 @@ namespace smokebox {
 namespace {
 
 using Lanes = ContactBlocks::Lanes;
+using Motions = ContactBlocks::Motions;
 constexpr int kColours = 64;
 // So few contacts would leave most lanes empty: they are solved one by one.
 constexpr int kFew = 12;
@@ -16,10 +17,6 @@ constexpr int kFew = 12;
 constexpr int kKinds = 4;
 // A block that parted faster than it needs by so many times what the last sweep changed is left out.
 constexpr double kSpare = 4;
-
-struct Motions {
-  Lanes x, y, turn;
-};
 
 typedef double Four __attribute__((vector_size(32)));
 
@@ -69,6 +66,10 @@ inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motio
   scatterFour(to, index + 4, bits >> 4, high(m.x), high(m.y), high(m.turn));
 }
 
+template <class Short>
+inline Lanes wide(Short a) {
+  return __builtin_convertvector(a, Lanes);
+}
 inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 inline double largestOf(Lanes a) {
@@ -97,12 +98,17 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
   }
   // First what bears along gravity, then what bears sideways, last what is merely near: a sweep in this order
   // leaves the least undone, and does not change with what comes near.
+  brief_.resize(count);
+  for (int k = 0; k < count; ++k) {
+    const Contact& c = contacts[k];
+    const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0;
+    const double along = dot(c.normal, down);
+    brief_[k] = {c.a, c.b, !bears ? 2 : along * along > 0.5 ? 0 : 1, c.count};
+  }
   for (const int rank : {0, 1, 2})
     for (int k = 0; k < count; ++k) {
-      const Contact& c = contacts[k];
-      const bool bears = c.points[0].impulseN > 0 || c.points[1].impulseN > 0;
-      const double along = dot(c.normal, down);
-      if (rank != (!bears ? 2 : along * along > 0.5 ? 0 : 1)) continue;
+      const Brief& c = brief_[k];
+      if (c.rank != rank) continue;
       const bool movesA = bodies.moves(c.a), movesB = bodies.moves(c.b);
       const std::uint64_t used = (movesA ? used_[c.a] : 0) | (movesB ? used_[c.b] : 0);
       if (~used == 0) {
@@ -114,7 +120,7 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
       colour_[k] = colour;
       if (movesA) used_[c.a] |= std::uint64_t{1} << colour;
       if (movesB) used_[c.b] |= std::uint64_t{1} << colour;
-      kind_[k] = kKinds * colour + (bears ? 0 : 2) + (c.count == 2 ? 0 : 1);
+      kind_[k] = kKinds * colour + (rank < 2 ? 0 : 2) + (c.count == 2 ? 0 : 1);
       ++start_[kind_[k] + 1];
     }
   // Each colour begins a new block.
@@ -144,24 +150,24 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
     block.count = std::max(block.count, c.count);
     if (bodies.moves(c.a)) block.storeA |= 1 << l;
     if (bodies.moves(c.b)) block.storeB |= 1 << l;
-    block.nx[l] = c.normal.x;
-    block.ny[l] = c.normal.y;
-    block.friction[l] = c.friction;
-    block.inverseA[l] = bodies.inverse[c.a].mass;
-    block.inertiaA[l] = bodies.inverse[c.a].inertia;
-    block.inverseB[l] = bodies.inverse[c.b].mass;
-    block.inertiaB[l] = bodies.inverse[c.b].inertia;
+    block.nx[l] = static_cast<float>(c.normal.x);
+    block.ny[l] = static_cast<float>(c.normal.y);
+    block.friction[l] = static_cast<float>(c.friction);
+    block.inverseA[l] = static_cast<float>(bodies.inverse[c.a].mass);
+    block.inertiaA[l] = static_cast<float>(bodies.inverse[c.a].inertia);
+    block.inverseB[l] = static_cast<float>(bodies.inverse[c.b].mass);
+    block.inertiaB[l] = static_cast<float>(bodies.inverse[c.b].inertia);
     const Vec2 tangent = perpendicular(c.normal);
     for (int p = 0; p < c.count; ++p) {
       const ContactPoint& from = c.points[p];
       Point& to = block.points[p];
-      to.armAN[l] = cross(from.armA, c.normal);
-      to.armBN[l] = cross(from.armB, c.normal);
-      to.armAT[l] = cross(from.armA, tangent);
-      to.armBT[l] = cross(from.armB, tangent);
+      to.armAN[l] = static_cast<float>(cross(from.armA, c.normal));
+      to.armBN[l] = static_cast<float>(cross(from.armB, c.normal));
+      to.armAT[l] = static_cast<float>(cross(from.armA, tangent));
+      to.armBT[l] = static_cast<float>(cross(from.armB, tangent));
       to.gap[l] = from.gap;
-      to.massN[l] = from.massN;
-      to.massT[l] = from.massT;
+      to.massN[l] = static_cast<float>(from.massN);
+      to.massT[l] = static_cast<float>(from.massT);
       to.impulseN[l] = from.impulseN;
       block.total[l] -= from.impulseN;  // which the first sweep counts, but belongs to the step before
       to.impulseT[l] = from.impulseT;
@@ -177,102 +183,120 @@ void ContactBlocks::warmStart(Bodies& bodies) const {
     for (int k = 0; k < block.count; ++k) {
       const Point& p = block.points[k];
       // Tangent: the normal turned by 90 degrees counterclockwise.
-      const Lanes px = block.nx * p.impulseN - block.ny * p.impulseT,
-                  py = block.ny * p.impulseN + block.nx * p.impulseT;
-      va.x -= block.inverseA * px;
-      va.y -= block.inverseA * py;
-      va.turn -= block.inertiaA * (p.armAN * p.impulseN + p.armAT * p.impulseT);
-      vb.x += block.inverseB * px;
-      vb.y += block.inverseB * py;
-      vb.turn += block.inertiaB * (p.armBN * p.impulseN + p.armBT * p.impulseT);
+      const Lanes px = wide(block.nx) * p.impulseN - wide(block.ny) * p.impulseT,
+                  py = wide(block.ny) * p.impulseN + wide(block.nx) * p.impulseT;
+      va.x -= wide(block.inverseA) * px;
+      va.y -= wide(block.inverseA) * py;
+      va.turn -= wide(block.inertiaA) * (wide(p.armAN) * p.impulseN + wide(p.armAT) * p.impulseT);
+      vb.x += wide(block.inverseB) * px;
+      vb.y += wide(block.inverseB) * py;
+      vb.turn += wide(block.inertiaB) * (wide(p.armBN) * p.impulseN + wide(p.armBT) * p.impulseT);
     }
     scatter(velocity, block.a, block.storeA, va);
     scatter(velocity, block.b, block.storeB, vb);
   }
 }
 
-double ContactBlocks::solve(Bodies& bodies, double h, bool first, double above) {
-  Motion* velocity = bodies.velocity.data();
-  const Motion* moved = bodies.moved.data();
-  const Lanes rate = Lanes{} + 1 / h;
-  double result = 0;
-  for (Block& block : blocks_) {
-    if (!first && (block.spare > kSpare * change_ || block.change < above)) continue;
-    Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
-    const Motions da = gather(moved, block.a), db = gather(moved, block.b);
-    const Lanes nx = block.nx, ny = block.ny;
-    const Lanes apart = nx * (db.x - da.x) + ny * (db.y - da.y);
-    Lanes deepest{}, largest{}, least = Lanes{} + 1e300;
-    for (int k = 0; k < block.count; ++k) {
-      Point& p = block.points[k];
-      if (first) block.total += p.impulseN;  // what the last sub-step came to
-      const Lanes gap = p.gap + apart + db.turn * p.armBN - da.turn * p.armAN;
-      deepest = smaller(deepest, gap);
-      const Lanes allowed = larger(gap, Lanes{}) * rate;
-      const Lanes vn = nx * (vb.x - va.x) + ny * (vb.y - va.y) + vb.turn * p.armBN - va.turn * p.armAN;
-      const Lanes parts = vn + allowed;
-      const Lanes total = larger(p.impulseN - p.massN * parts, Lanes{});
-      const Lanes change = total - p.impulseN;
-      p.impulseN = total;
-      va.x -= block.inverseA * nx * change;
-      va.y -= block.inverseA * ny * change;
-      va.turn -= block.inertiaA * p.armAN * change;
-      vb.x += block.inverseB * nx * change;
-      vb.y += block.inverseB * ny * change;
-      vb.turn += block.inertiaB * p.armBN * change;
-      // The change of the velocity: all that was amiss, or less where the contact lets go.
-      const Lanes amiss = parts < 0 ? -parts : parts;
-      largest = larger(largest, change != 0 ? amiss : Lanes{});
-      least = smaller(least, p.massN > 0 ? (total > 0 ? Lanes{} : parts) : Lanes{} + 1e300);
-
-      const Lanes vt = nx * (vb.y - va.y) - ny * (vb.x - va.x) + vb.turn * p.armBT - va.turn * p.armAT;
-      const Lanes most = block.friction * p.impulseN;
-      const Lanes tangential = smaller(larger(p.impulseT - p.massT * vt, -most), most);
-      const Lanes slide = tangential - p.impulseT;
-      p.impulseT = tangential;
-      va.x += block.inverseA * ny * slide;
-      va.y -= block.inverseA * nx * slide;
-      va.turn -= block.inertiaA * p.armAT * slide;
-      vb.x -= block.inverseB * ny * slide;
-      vb.y += block.inverseB * nx * slide;
-      vb.turn += block.inertiaB * p.armBT * slide;
-    }
-    if (first) block.deepest = smallestOf(deepest);
-    block.spare = smallestOf(least);
-    block.change = largestOf(largest);
-    result = std::max(result, block.change);
-    scatter(velocity, block.a, block.storeA, va);
-    scatter(velocity, block.b, block.storeB, vb);
+/// Moves the bodies of a block apart where they overlap, on places alone.
+inline void ContactBlocks::separate(const Block& block, const Apart& apart, Motion* moved, Motions& da,
+                                    Motions& db) {
+  const Lanes nx = wide(block.nx), ny = wide(block.ny), cap = Lanes{} + apart.most;
+  for (int k = 0; k < block.count; ++k) {
+    const Point& p = block.points[k];
+    const Lanes armA = wide(p.armAN), armB = wide(p.armBN);
+    const Lanes gap = p.gap + nx * (db.x - da.x) + ny * (db.y - da.y) + db.turn * armB - da.turn * armA;
+    const Lanes overlap = smaller(larger(-apart.share * gap, Lanes{}), cap) * wide(p.massN);
+    da.x -= wide(block.inverseA) * nx * overlap;
+    da.y -= wide(block.inverseA) * ny * overlap;
+    da.turn -= wide(block.inertiaA) * armA * overlap;
+    db.x += wide(block.inverseB) * nx * overlap;
+    db.y += wide(block.inverseB) * ny * overlap;
+    db.turn += wide(block.inertiaB) * armB * overlap;
   }
+  scatter(moved, block.a, block.storeA, da);
+  scatter(moved, block.b, block.storeB, db);
+}
+
+inline double ContactBlocks::solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first) {
+  Motion* velocity = bodies.velocity.data();
+  Motion* moved = bodies.moved.data();
+  const Lanes rate = Lanes{} + perSecond;
+  Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
+  Motions da = gather(moved, block.a), db = gather(moved, block.b);
+  const Lanes nx = wide(block.nx), ny = wide(block.ny);
+  const Lanes apart = nx * (db.x - da.x) + ny * (db.y - da.y);
+  Lanes deepest{}, largest{}, least = Lanes{} + 1e300;
+  for (int k = 0; k < block.count; ++k) {
+    Point& p = block.points[k];
+    if (first) block.total += p.impulseN;  // what the last sub-step came to
+    const Lanes gap = p.gap + apart + db.turn * wide(p.armBN) - da.turn * wide(p.armAN);
+    deepest = smaller(deepest, gap);
+    const Lanes allowed = larger(gap, Lanes{}) * rate;
+    const Lanes vn =
+        nx * (vb.x - va.x) + ny * (vb.y - va.y) + vb.turn * wide(p.armBN) - va.turn * wide(p.armAN);
+    const Lanes parts = vn + allowed;
+    const Lanes total = larger(p.impulseN - wide(p.massN) * parts, Lanes{});
+    const Lanes change = total - p.impulseN;
+    p.impulseN = total;
+    va.x -= wide(block.inverseA) * nx * change;
+    va.y -= wide(block.inverseA) * ny * change;
+    va.turn -= wide(block.inertiaA) * wide(p.armAN) * change;
+    vb.x += wide(block.inverseB) * nx * change;
+    vb.y += wide(block.inverseB) * ny * change;
+    vb.turn += wide(block.inertiaB) * wide(p.armBN) * change;
+    // The change of the velocity: all that was amiss, or less where the contact lets go.
+    const Lanes amiss = parts < 0 ? -parts : parts;
+    largest = larger(largest, change != 0 ? amiss : Lanes{});
+    least = smaller(least, wide(p.massN) > 0 ? (total > 0 ? Lanes{} : parts) : Lanes{} + 1e300);
+
+    const Lanes vt =
+        nx * (vb.y - va.y) - ny * (vb.x - va.x) + vb.turn * wide(p.armBT) - va.turn * wide(p.armAT);
+    const Lanes most = wide(block.friction) * p.impulseN;
+    const Lanes tangential = smaller(larger(p.impulseT - wide(p.massT) * vt, -most), most);
+    const Lanes slide = tangential - p.impulseT;
+    p.impulseT = tangential;
+    va.x += wide(block.inverseA) * ny * slide;
+    va.y -= wide(block.inverseA) * nx * slide;
+    va.turn -= wide(block.inertiaA) * wide(p.armAT) * slide;
+    vb.x -= wide(block.inverseB) * ny * slide;
+    vb.y += wide(block.inverseB) * nx * slide;
+    vb.turn += wide(block.inertiaB) * wide(p.armBT) * slide;
+  }
+  if (first && smallestOf(deepest) < -first->slop) separate(block, *first, moved, da, db);
+  block.spare = smallestOf(least);
+  block.change = largestOf(largest);
+  scatter(velocity, block.a, block.storeA, va);
+  scatter(velocity, block.b, block.storeB, vb);
+  return block.change;
+}
+
+double ContactBlocks::solve(Bodies& bodies, double h, const Apart* first) {
+  double result = 0;
+  for (Block& block : blocks_)
+    if (first || !(block.spare > kSpare * change_))
+      result = std::max(result, solveBlock(block, bodies, 1 / h, first));
   change_ = result;
   return result;
 }
 
-void ContactBlocks::separate(Bodies& bodies, double slop, double share, double most) const {
-  Motion* moved = bodies.moved.data();
-  const Lanes cap = Lanes{} + most;
-  for (const Block& block : blocks_) {
-    if (block.deepest >= -slop) continue;
-    Motions da = gather(moved, block.a), db = gather(moved, block.b);
-    bool any = false;
-    for (int k = 0; k < block.count; ++k) {
-      const Point& p = block.points[k];
-      const Lanes gap =
-          p.gap + block.nx * (db.x - da.x) + block.ny * (db.y - da.y) + db.turn * p.armBN - da.turn * p.armAN;
-      const Lanes overlap = smaller(larger(-share * gap, Lanes{}), cap) * p.massN;
-      if (!(largestOf(overlap) > 0)) continue;
-      any = true;
-      da.x -= block.inverseA * block.nx * overlap;
-      da.y -= block.inverseA * block.ny * overlap;
-      da.turn -= block.inertiaA * p.armAN * overlap;
-      db.x += block.inverseB * block.nx * overlap;
-      db.y += block.inverseB * block.ny * overlap;
-      db.turn += block.inertiaB * p.armBN * overlap;
-    }
-    if (!any) continue;
-    scatter(moved, block.a, block.storeA, da);
-    scatter(moved, block.b, block.storeB, db);
+void ContactBlocks::beginRough(double above) {
+  rough_.clear();
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (blocks_[k].change >= above) rough_.push_back(static_cast<int>(k));
+}
+
+double ContactBlocks::solveRough(Bodies& bodies, double h, double above) {
+  double result = 0;
+  std::size_t kept = 0;
+  for (const int k : rough_) {
+    if (blocks_[k].spare > kSpare * change_) continue;
+    const double change = solveBlock(blocks_[k], bodies, 1 / h, nullptr);
+    result = std::max(result, change);
+    if (change >= above) rough_[kept++] = k;
   }
+  rough_.resize(kept);
+  change_ = result;
+  return result;
 }
 
 void ContactBlocks::readLane(const Block& block, int lane, Contact& contact) {
@@ -295,10 +319,8 @@ void ContactBlocks::drop(int index, Contact& contact) {
   place_[index] = -1;
 }
 
-void ContactBlocks::readBack(std::vector<Contact>& contacts) const {
-  for (const Block& block : blocks_)
-    for (int l = 0; l < kLanes; ++l)
-      if (block.contact[l] >= 0) readLane(block, l, contacts[block.contact[l]]);
+void ContactBlocks::readBack(int index, Contact& contact) const {
+  if (place_[index] >= 0) readLane(blocks_[place_[index] / kLanes], place_[index] % kLanes, contact);
 }
 
 }  // namespace smokebox

@@ -3,7 +3,8 @@
 // no moving body is met twice within a block, so the order of the lanes does not matter.
 //
 // A contact that is not closed yet may close within the sub-step but not go beyond (Mirtich's and Catto's
-// speculative contact): v_n >= -gap / h. What overlaps is moved apart by separate() on places alone.
+// speculative contact): v_n >= -gap / h. What overlaps is moved apart on places alone, as the
+// first sweep of the next sub-step comes by.
 #pragma once
 #include <vector>
 
@@ -16,6 +17,9 @@ class ContactBlocks {
  public:
   static constexpr int kLanes = 8;
   typedef double Lanes __attribute__((vector_size(64)));
+  struct Motions {
+    Lanes x, y, turn;
+  };
 
   /// Colours the contacts and lays them out; `down`: along gravity, of length 1, or (0, 0). Those that find
   /// no colour are listed in `rest`.
@@ -26,16 +30,22 @@ class ContactBlocks {
 
   /// Adds the impulses to the velocities.
   void warmStart(Bodies& bodies) const;
-  /// One sweep (the first of a sub-step or a further one) over the blocks that the last one changed by
-  /// `above` or more. Gives the largest change of a relative velocity, m/s.
-  double solve(Bodies& bodies, double h, bool first, double above = 0);
-  /// Moves bodies apart that overlapped by more than `slop` in the last first sweep: a share of the overlap,
-  /// at most `most` metres.
-  void separate(Bodies& bodies, double slop, double share, double most) const;
+  /// Who overlaps by more than `slop` metres is moved apart by a share of that, at most `most` metres.
+  struct Apart {
+    double slop, share, most;
+  };
+  /// One sweep: the first of a sub-step, which moves bodies apart too, or a further one (null). Gives the
+  /// largest change of a relative velocity, m/s.
+  double solve(Bodies& bodies, double h, const Apart* first);
+  /// From here on solveRough() goes over the blocks that the last sweep changed by `above` or more, and
+  /// leaves out those that it changes by less.
+  void beginRough(double above);
+  double solveRough(Bodies& bodies, double h, double above);
   /// Takes contact `index` out for the rest of the step; `contact` gets its impulses.
   void drop(int index, Contact& contact);
-  /// Copies the impulses back, the last ones and their totals; contacts that were dropped keep theirs.
-  void readBack(std::vector<Contact>& contacts) const;
+  /// Copies the impulses of contact `index` back, the last ones and their total; one that was dropped keeps
+  /// its own.
+  void readBack(int index, Contact& contact) const;
   /// visit(impulses, effective masses, kLanes) for the points' normals and tangents, in a fixed order; who
   /// changes them brings the velocities along.
   template <class Visit>
@@ -44,8 +54,8 @@ class ContactBlocks {
       block.spare = 0;
       for (int k = 0; k < block.count; ++k) {
         Point& p = block.points[k];
-        visit(reinterpret_cast<double*>(&p.impulseN), reinterpret_cast<const double*>(&p.massN), kLanes);
-        visit(reinterpret_cast<double*>(&p.impulseT), reinterpret_cast<const double*>(&p.massT), kLanes);
+        visit(reinterpret_cast<double*>(&p.impulseN), reinterpret_cast<const float*>(&p.massN), kLanes);
+        visit(reinterpret_cast<double*>(&p.impulseT), reinterpret_cast<const float*>(&p.massT), kLanes);
       }
     }
   }
@@ -53,10 +63,16 @@ class ContactBlocks {
 
  private:
   struct Block;
+  static double solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first);
+  static void separate(const Block& block, const Apart& apart, Motion* moved, Motions& da, Motions& db);
   static void readLane(const Block& block, int lane, Contact& contact);
+  // What does not change is kept short: a sweep over many contacts waits for the memory. Both bodies get the
+  // same impulse, so momentum is kept to rounding whatever the normal's.
+  typedef float ShortLanes __attribute__((vector_size(32)));
   struct Point {
-    Lanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
-    Lanes gap, massN, massT, impulseN, impulseT;
+    ShortLanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
+    ShortLanes massN, massT;
+    Lanes gap, impulseN, impulseT;
   };
   struct alignas(64) Block {
     int a[kLanes], b[kLanes];
@@ -64,19 +80,23 @@ class ContactBlocks {
     std::uint8_t storeA, storeB;  // bits: the lane's body moves
     int count;                    // points of its contacts: 1 or 2
     double change;                // of a relative velocity in the last sweep, m/s
-    double deepest;               // smallest gap in the last first sweep
     double spare;  // all parted faster than they need by so much in the last sweep, m/s; 0: none
-    Lanes nx, ny, friction;
+    ShortLanes nx, ny, friction;
+    ShortLanes inverseA, inertiaA, inverseB, inertiaB;
     Lanes total;  // N s along the normal so far in this step, but for the last sub-step
-    Lanes inverseA, inertiaA, inverseB, inertiaB;
     Point points[2];
   };
   std::vector<Block> blocks_;
+  std::vector<int> rough_;  // blocks
   long points_ = 0;
   double change_ = 0;                       // of the last sweep
   std::vector<std::uint64_t> used_;         // colours at each body
   std::vector<int> colour_, kind_, place_;  // by contact: colour; block * kLanes + lane, or -1
-  std::vector<int> order_, start_;
+  std::vector<int> start_;
+  struct Brief {
+    int a, b, rank, count;
+  };
+  std::vector<Brief> brief_;  // of the contacts, for colouring
 };
 
 }  // namespace smokebox

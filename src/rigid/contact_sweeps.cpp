@@ -80,59 +80,64 @@ void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h) {
     }
 }
 
-double solve(Bodies& bodies, std::vector<Contact>& contacts) {
-  double largest = 0;
-  for (Contact& contact : contacts) {
-    const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
-    Motion va = bodies.velocity[contact.a], vb = bodies.velocity[contact.b];
-    const Vec2 n = contact.normal, t = perpendicular(n);
-    auto speed = [&](Vec2 along, const ContactPoint& p) {
-      return along.x * (vb.x - va.x) + along.y * (vb.y - va.y) + vb.turn * cross(p.armB, along) -
-             va.turn * cross(p.armA, along);
-    };
-    auto push = [&](Vec2 along, const ContactPoint& p, double impulse) {
-      va.x -= ma.mass * along.x * impulse;
-      va.y -= ma.mass * along.y * impulse;
-      va.turn -= ma.inertia * cross(p.armA, along) * impulse;
-      vb.x += mb.mass * along.x * impulse;
-      vb.y += mb.mass * along.y * impulse;
-      vb.turn += mb.inertia * cross(p.armB, along) * impulse;
-    };
-    auto change = [&](ContactPoint& p, double total) {
-      const double by = total - p.impulseN;
-      p.impulseN = total;
-      push(n, p, by);
-      if (p.massN > 0) largest = std::max(largest, std::abs(by) / p.massN);
-    };
-    auto isIdle = [&](const ContactPoint& p) {
-      return p.impulseN == 0 && p.impulseT == 0 && speed(n, p) + p.allowed >= 0;
-    };
-    if (isIdle(contact.points[0]) && (contact.count == 1 || isIdle(contact.points[1]))) continue;
-    if (areTwo(contact)) {
-      ContactPoint &p = contact.points[0], &q = contact.points[1];
-      const double* k = contact.response;
-      const double free[2] = {speed(n, p) + p.allowed - k[0] * p.impulseN - k[1] * q.impulseN,
-                              speed(n, q) + q.allowed - k[1] * p.impulseN - k[2] * q.impulseN};
-      double total[2];
-      solveBoth(k, free, total);
-      change(p, total[0]);
-      change(q, total[1]);
-    } else {
-      for (int k = 0; k < contact.count; ++k) {
-        ContactPoint& p = contact.points[k];
-        change(p, std::max(p.impulseN - p.massN * (speed(n, p) + p.allowed), 0.0));
-      }
-    }
+double solve(Bodies& bodies, Contact& contact) {
+  double& largest = contact.change;
+  largest = 0;
+  const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
+  Motion va = bodies.velocity[contact.a], vb = bodies.velocity[contact.b];
+  const Vec2 n = contact.normal, t = perpendicular(n);
+  auto speed = [&](Vec2 along, const ContactPoint& p) {
+    return along.x * (vb.x - va.x) + along.y * (vb.y - va.y) + vb.turn * cross(p.armB, along) -
+           va.turn * cross(p.armA, along);
+  };
+  auto push = [&](Vec2 along, const ContactPoint& p, double impulse) {
+    va.x -= ma.mass * along.x * impulse;
+    va.y -= ma.mass * along.y * impulse;
+    va.turn -= ma.inertia * cross(p.armA, along) * impulse;
+    vb.x += mb.mass * along.x * impulse;
+    vb.y += mb.mass * along.y * impulse;
+    vb.turn += mb.inertia * cross(p.armB, along) * impulse;
+  };
+  auto change = [&](ContactPoint& p, double total) {
+    const double by = total - p.impulseN;
+    p.impulseN = total;
+    push(n, p, by);
+    if (p.massN > 0) largest = std::max(largest, std::abs(by) / p.massN);
+  };
+  auto isIdle = [&](const ContactPoint& p) {
+    return p.impulseN == 0 && p.impulseT == 0 && speed(n, p) + p.allowed >= 0;
+  };
+  if (isIdle(contact.points[0]) && (contact.count == 1 || isIdle(contact.points[1]))) return 0;
+  if (areTwo(contact)) {
+    ContactPoint &p = contact.points[0], &q = contact.points[1];
+    const double* k = contact.response;
+    const double free[2] = {speed(n, p) + p.allowed - k[0] * p.impulseN - k[1] * q.impulseN,
+                            speed(n, q) + q.allowed - k[1] * p.impulseN - k[2] * q.impulseN};
+    double total[2];
+    solveBoth(k, free, total);
+    change(p, total[0]);
+    change(q, total[1]);
+  } else {
     for (int k = 0; k < contact.count; ++k) {
       ContactPoint& p = contact.points[k];
-      const double most = contact.friction * p.impulseN;
-      const double tangential = std::clamp(p.impulseT - p.massT * speed(t, p), -most, most);
-      push(t, p, tangential - p.impulseT);
-      p.impulseT = tangential;
+      change(p, std::max(p.impulseN - p.massN * (speed(n, p) + p.allowed), 0.0));
     }
-    bodies.velocity[contact.a] = va;
-    bodies.velocity[contact.b] = vb;
   }
+  for (int k = 0; k < contact.count; ++k) {
+    ContactPoint& p = contact.points[k];
+    const double most = contact.friction * p.impulseN;
+    const double tangential = std::clamp(p.impulseT - p.massT * speed(t, p), -most, most);
+    push(t, p, tangential - p.impulseT);
+    p.impulseT = tangential;
+  }
+  bodies.velocity[contact.a] = va;
+  bodies.velocity[contact.b] = vb;
+  return largest;
+}
+
+double solve(Bodies& bodies, std::vector<Contact>& contacts) {
+  double largest = 0;
+  for (Contact& contact : contacts) largest = std::max(largest, solve(bodies, contact));
   return largest;
 }
 

@@ -25,7 +25,9 @@ void solveBoth(const double k[3], const double speed[2], double impulse[2]);
 void warmStart(Bodies& bodies, const std::vector<Contact>& contacts);
 /// Once before the sweeps of a sub-step: how fast each gap may close.
 void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h);
-/// One sweep; gives the largest change of a relative velocity, m/s.
+/// Gives the largest change of a relative velocity, m/s, and notes it in the contact.
+double solve(Bodies& bodies, Contact& contact);
+/// One sweep.
 double solve(Bodies& bodies, std::vector<Contact>& contacts);
 void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most);
 

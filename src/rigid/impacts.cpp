@@ -34,8 +34,8 @@ double gapOf(const std::vector<Motion>& way, const Contact& contact, const Conta
 }  // namespace
 
 Vec2 Impacts::acceleration(const Bodies& bodies, const Contact& contact) const {
-  const double b = bodies.moves(contact.b) ? bodies.def[contact.b].gravityScale : 0;
-  const double a = bodies.moves(contact.a) ? bodies.def[contact.a].gravityScale : 0;
+  const double b = bodies.moves(contact.b) ? bodies.surface[contact.b].gravityScale : 0;
+  const double a = bodies.moves(contact.a) ? bodies.surface[contact.a].gravityScale : 0;
   return (b - a) * gravity_;
 }
 
@@ -93,7 +93,7 @@ Frame Impacts::frameAt(const Bodies& bodies, const std::vector<Motion>& way, int
                        double time) const {
   const Motion &m = bodies.moved[body], &w = way[body], &v = bodies.velocity[body];
   // Gravity bends the way within the sub-step; at its start and its end the bend is 0.
-  const double bend = bodies.moves(body) ? 0.5 * bodies.def[body].gravityScale * time * (time - h) : 0;
+  const double bend = bodies.moves(body) ? 0.5 * bodies.surface[body].gravityScale * time * (time - h) : 0;
   return {bodies.position[body] + m.linear() + w.linear() + time * v.linear() + bend * gravity_,
           turnedBy(bodies.turn[body], m.turn + w.turn + time * v.turn)};
 }

@@ -19,7 +19,7 @@ constexpr double kCalmSubSteps = 10;
 // A body may stray by this share of its width from the way expected of it.
 constexpr double kStray = 0.02;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
-constexpr double kReuse = 2e-3;
+constexpr double kReuse = 2e-3, kReuseFollowing = 8e-3;
 // ... or have turned by so much, rad, where the normal does not follow an edge: no stack leans on those of
 // before.
 constexpr double kReuseTurn = 1e-5;
@@ -47,7 +47,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   stirred_.assign(count, 0);
   for (int b = 0; b < count; ++b) {
     if (!bodies.there[b]) continue;
-    const double fall = length(gravity) * std::abs(bodies.def[b].gravityScale) * dt * dt;
+    const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
     expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * bodies.extent[b].thinnest : 0};
   }
   auto& pairs = broad.pairs();
@@ -63,7 +63,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     calmFirst_[k] = static_cast<int>(calm_.size());
     const double thin = thinner(bodies, a, b);
     const double way = relativeSpeed(bodies, a, b) * dt;
-    const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
+    const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
     const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
     const bool pushed =
         (!bodies.moves(a) && isMoving(bodies, a)) || (!bodies.moves(b) && isMoving(bodies, b));
@@ -84,18 +84,19 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
       const auto begin = memory_.begin() + pair.first;
       return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
     };
-    const bool same = since <= kReuse * thin && (std::max(turnedA, turnedB) <= kReuseTurn || follows());
+    const bool same = (since <= kReuse * thin && std::max(turnedA, turnedB) <= kReuseTurn) ||
+                      (since <= kReuseFollowing * thin && follows());
     if ((pair.apart || same) && margin + since <= pair.margin) {
       calm_.insert(calm_.end(), memory_.begin() + pair.first, memory_.begin() + pair.first + pair.count);
       for (auto c = calm_.end() - pair.count; c != calm_.end(); ++c) {
         setMasses(bodies, *c);
-        c->friction = std::sqrt(bodies.def[a].friction * bodies.def[b].friction);
-        c->bounce = std::max(bodies.def[a].bounce, bodies.def[b].bounce);
-        c->approach = 0;
+        c->friction = std::sqrt(bodies.surface[a].friction * bodies.surface[b].friction);
+        c->bounce = std::max(bodies.surface[a].bounce, bodies.surface[b].bounce);
+        c->total = c->approach = 0;
       }
       continue;
     }
-    pair.margin = margin + 2 * kReuse * thin;
+    pair.margin = margin + 2 * kReuseFollowing * thin;
     pair.between = between;
     pair.angleA = bodies.angleRad[a];
     pair.angleB = bodies.angleRad[b];
@@ -107,7 +108,6 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     pair.margin = std::max(pair.margin, clear);
   }
   calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
-  for (Contact& contact : calm_) contact.total = 0;
   for (Contact& contact : lively_) contact.total = contact.approach = 0;
   dropped_.assign(calm_.size(), 0);
 }
@@ -133,37 +133,54 @@ void NarrowPhase::listPairs(const Bodies& bodies, const std::vector<BodyPair>& p
   pairsListed_ = true;
 }
 
+void NarrowPhase::refreshPair(LivelyPair& pair, const Bodies& bodies, const BroadPhase& broad, double h,
+                              const std::vector<double>* since) {
+  const int a = pair.key.a, b = pair.key.b;
+  const double thin = thinner(bodies, a, b);
+  const double way = relativeSpeed(bodies, a, b) * h;
+  pair.swept = way > kSwept * thin;
+  const int first = static_cast<int>(next_.size());
+  pair.clear -= way;
+  if (pair.clear < 0) {
+    const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
+    const double reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
+    const double near = pair.swept ? way : way + kNear * thin + reuse;
+    const Vec2 shift = broad.shiftOf(pair.key);
+    double clear = clearance(bodies, pair.key, shift, kAhead * near);
+    if (clear <= near)
+      clear = finder_.find(bodies, pair.key, shift, near, h, pair.swept, lively_.data() + pair.first,
+                           pair.count, next_, {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
+    pair.clear = static_cast<int>(next_.size()) > first && !pair.swept ? reuse : clear - near;
+  } else {
+    next_.insert(next_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
+    for (std::size_t k = first; k < next_.size(); ++k) {
+      next_[k].total = next_[k].approach = 0;
+      next_[k].struck = false;
+    }
+  }
+  pair.first = first;
+  pair.count = static_cast<int>(next_.size()) - first;
+}
+
 void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double h,
                           const std::vector<double>* since) {
   next_.clear();
-  for (LivelyPair& pair : pairs_) {
-    const int a = pair.key.a, b = pair.key.b;
-    const double thin = thinner(bodies, a, b);
-    const double way = relativeSpeed(bodies, a, b) * h;
-    pair.swept = way > kSwept * thin;
-    const int first = static_cast<int>(next_.size());
-    pair.clear -= way;
-    if (pair.clear < 0) {
-      const bool bounces = bodies.def[a].bounce > 0 || bodies.def[b].bounce > 0;
-      const double reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
-      const double near = pair.swept ? way : way + kNear * thin + reuse;
-      const Vec2 shift = broad.shiftOf(pair.key);
-      double clear = clearance(bodies, pair.key, shift, kAhead * near);
-      if (clear <= near)
-        clear = finder_.find(bodies, pair.key, shift, near, h, pair.swept, lively_.data() + pair.first,
-                             pair.count, next_, {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
-      pair.clear = static_cast<int>(next_.size()) > first && !pair.swept ? reuse : clear - near;
-    } else {
-      next_.insert(next_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
-      for (std::size_t k = first; k < next_.size(); ++k) {
-        next_[k].total = next_[k].approach = 0;
-        next_[k].struck = false;
-      }
-    }
-    pair.first = first;
-    pair.count = static_cast<int>(next_.size()) - first;
-  }
+  for (LivelyPair& pair : pairs_) refreshPair(pair, bodies, broad, h, since);
   lively_.swap(next_);
+  refreshed_ = pairs_.size();
+}
+
+void NarrowPhase::refreshNew(const Bodies& bodies, const BroadPhase& broad, double h,
+                             const std::vector<double>* since) {
+  for (; refreshed_ < pairs_.size(); ++refreshed_) {
+    LivelyPair& pair = pairs_[refreshed_];
+    const int first = pair.first, count = pair.count;
+    next_.clear();
+    refreshPair(pair, bodies, broad, h, since);
+    pair.first = first;
+    pair.count = count;
+    replace(pair);
+  }
 }
 
 void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
@@ -221,11 +238,12 @@ void NarrowPhase::replace(LivelyPair& pair) {
   pair.count = count;
 }
 
-bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
-                       ContactBlocks& blocks, double timeLeft) {
+NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad,
+                                    Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
   leaving_.clear();
   turned_.clear();
-  const double t = elapsed_ + h_;
+  const double t = elapsed_ + h_, ahead = timeLeft > 1.5 * h_ ? 1 : 0;
+  bool now = false;
   for (int b = 0; b < bodies.count(); ++b) {
     if (!bodies.moves(b) || !bodies.there[b]) continue;
     Expected& e = expected_[b];
@@ -234,20 +252,26 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
       const Vec2 changed = v.linear() - e.velocity.linear();
       const double slack = 0.5 * e.room / timeLeft;
       if (dot(changed, changed) <= slack * slack) continue;
+      now |= length(changed) * h_ > 0.5 * e.room;
       e.velocity = v;
       turned_.push_back(b);
       continue;
     }
     const Motion &m = bodies.moved[b], &w = way[b];
-    const Vec2 off = m.linear() + w.linear() - t * e.velocity.linear();
-    const double turned = m.turn + w.turn - t * e.velocity.turn;
-    const double left = e.room - std::abs(turned) * bodies.extent[b].turningReach;
-    if (left >= 0 && dot(off, off) <= left * left) continue;
+    auto leaves = [&](double later) {
+      const Vec2 off = m.linear() + (1 + later) * w.linear() - (t + later * h_) * e.velocity.linear();
+      const double turned = m.turn + (1 + later) * w.turn - (t + later * h_) * e.velocity.turn;
+      const double left = e.room - std::abs(turned) * bodies.extent[b].turningReach;
+      return left < 0 || dot(off, off) > left * left;
+    };
+    const bool leavesNow = leaves(0);
+    if (!leavesNow && !leaves(ahead)) continue;
+    now |= leavesNow;
     stirred_[b] = 1;
     e.velocity = bodies.velocity[b];
     leaving_.push_back(b);
   }
-  if (leaving_.empty() && turned_.empty()) return false;
+  if (leaving_.empty() && turned_.empty()) return Stir::none;
   bool any = false;
   const auto& pairs = broad.pairs();
   if (!pairsListed_) listPairs(bodies, pairs);
@@ -271,7 +295,7 @@ bool NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, Bro
     makeLively(key, -1, nullptr, 0);
     any = true;
   }
-  return any;
+  return !any ? Stir::none : now ? Stir::now : Stir::later;
 }
 
 void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, double h,
@@ -290,8 +314,7 @@ void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, dou
   passing_.stop(bodies, broad, swept_, h, since, way);
 }
 
-void NarrowPhase::endStep(const Bodies& bodies, BroadPhase& broad) {
-  for (Contact& contact : calm_) bringUpToDate(bodies, contact);  // it may be used again
+void NarrowPhase::endStep(BroadPhase& broad) {
   memory_.swap(calm_);
   auto& pairs = broad.pairs();
   for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -22,13 +22,17 @@ class NarrowPhase {
   /// Finds the lively contacts for the coming sub-step, with the impulses of the last one; `since`: by body,
   /// the moment within it from which its way is straight (null: its start).
   void refresh(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since);
+  /// The same for those alone that became lively since.
+  void refreshNew(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since);
   /// After impacts, which have changed the bodies' ways by `struck`: looks again at the lively pairs that
   /// have had none themselves.
   void refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
                            const std::vector<Motion>& struck, const std::vector<double>& struckAt);
-  /// Bodies that would leave the way that was expected of them if they moved by `way` now: from then on their
-  /// pairs are lively. True if there are any (refresh again).
-  bool stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
+  /// Bodies that would leave the way that was expected of them if they moved by `way` now, or in the next
+  /// sub-step: from then on their pairs are lively. `now`: some do now (look at the new ones before they
+  /// move).
+  enum class Stir { none, later, now };
+  Stir stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
             ContactBlocks& blocks, double timeLeft);
   /// Pairs that would pass through each other by moving `way`: both are stopped where they meet.
   void stopPassing(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
@@ -39,8 +43,8 @@ class NarrowPhase {
   void yieldCrushed(Bodies& bodies, const std::vector<Motion>& before);
   /// A sub-step has passed.
   void advance() { elapsed_ += h_; }
-  /// Remembers the contacts and their impulses for the next step.
-  void endStep(const Bodies& bodies, BroadPhase& broad);
+  /// Remembers the contacts and their impulses for the next step; the calm ones are up to date.
+  void endStep(BroadPhase& broad);
 
   std::vector<Contact>& calm() { return calm_; }
   const std::vector<Contact>& calm() const { return calm_; }
@@ -65,10 +69,13 @@ class NarrowPhase {
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
+  void refreshPair(LivelyPair& pair, const Bodies& bodies, const BroadPhase& broad, double h,
+                   const std::vector<double>* since);
 
   std::vector<Contact> calm_, lively_, next_, memory_;
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
+  std::size_t refreshed_ = 0;  // so many of them have been looked at in this sub-step
   std::vector<Expected> expected_;
   std::vector<char> stirred_;
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs

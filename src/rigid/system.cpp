@@ -133,7 +133,7 @@ void RigidSystem::applyImpulse(int body, Vec2 at, Vec2 impulse) {
   const Motion was = v;
   s.bodies.push(body, at - s.bodies.positionNow(body), impulse);
   // The velocity of half a sub-step ago that damping makes this one of.
-  const auto since = s.fresh[body] ? State::Drive{} : s.drives[body].half;
+  const auto since = s.fresh[body] ? State::Drive{} : s.halfDrives[body];
   auto grow = [](double before, double& now, double& later, double left) {
     const double more = (now - before) * (1 / std::max(left, 1e-6) - 1);
     now += more;
@@ -207,12 +207,8 @@ void RigidSystem::moveSpringEnd(int spring, Vec2 to) { state_->springs.moveEnd(s
 // --- what there is now
 // ----------------------------------------------------------------------------------------------------------
 
-namespace {
-constexpr int kWalls = 4;  // the first bodies
-}
-
 int RigidSystem::bodyCount() const { return state_->bodies.count(); }
-bool RigidSystem::isThere(int body) const { return body >= kWalls && state_->bodies.there[body]; }
+bool RigidSystem::isThere(int body) const { return body >= State::kWalls && state_->bodies.there[body]; }
 const BodyDef& RigidSystem::def(int body) const { return state_->bodies.def[body]; }
 Vec2 RigidSystem::position(int body) const { return state_->bodies.position[body]; }
 double RigidSystem::angleRad(int body) const { return state_->bodies.angleRad[body]; }
@@ -242,7 +238,7 @@ const std::vector<Touch>& RigidSystem::touches() const { return state_->touches;
 RigidTotals RigidSystem::totals() const {
   const State& s = *state_;
   RigidTotals totals = s.contactTotals;
-  for (int b = kWalls; b < s.bodies.count(); ++b) {
+  for (int b = State::kWalls; b < s.bodies.count(); ++b) {
     const BodyDef& def = s.bodies.def[b];
     if (!s.bodies.there[b] || def.mass <= 0) continue;
     const Vec2 v = velocity(b), x = position(b);

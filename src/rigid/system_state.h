@@ -15,6 +15,10 @@
 namespace smokebox {
 
 struct RigidSystem::State {
+  static constexpr int kWalls = 4;  // the first bodies: left, right, bottom, top
+  /// Of an overlap, in each sub-step; at this speed at most, m/s.
+  static constexpr double kSeparateShare = 0.2, kSeparateSpeed = 4;
+
   State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads);
 
   // --- the stages of a step, in order
@@ -43,7 +47,7 @@ struct RigidSystem::State {
   bool meetsFast(const Contact& contact, double h) const;
   void keepInside();
   void warmStartAll(double h);
-  void collectTouches(const std::vector<Contact>& contacts);
+  void collectTouch(const Contact& contact);
   void wrap(int body);
   bool outside(int body) const;
 
@@ -75,23 +79,20 @@ struct RigidSystem::State {
     Vec2 gain;                       // m/s
     double linear = 1, angular = 1;  // what is left of it
   };
-  struct Drives {
-    Drive whole, half;  // of a sub-step
-  };
   Drive driveOver(const BodyDef& def, double time) const;
   /// Damping takes its share of what a force gives a body in a sub-step, as it does of what gravity gives:
   /// seen by forces the body is that much heavier, by impacts it is not.
   void findSeenByForces();
-  bool damped = false;                  // a body is
-  std::vector<InverseMass> forImpacts;  // while bodies.inverse is for forces
-  std::vector<Drives> drives;
+  bool damped = false;                    // a body is
+  std::vector<InverseMass> forImpacts;    // while bodies.inverse is for forces
+  std::vector<Drive> drives, halfDrives;  // of a sub-step, of half of one
   BroadPhase broad;
   NarrowPhase narrow;
   ContactBlocks blocks;
   std::vector<int> uncoloured;  // calm contacts that found no colour: solved one by one
   std::vector<Contact> spare;   // those
   std::vector<int> bouncing;    // calm contacts that may bounce
-  std::vector<Contact*> bouncers;
+  std::vector<Contact*> bouncers, rough;
   ConjugateSweeps conjugate;
   Impacts impact;
   Press press;

@@ -1,9 +1,6 @@
 // The stages of a step of bodies.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numeric>
-#include <utility>
 
 #include "base/errors.h"
 #include "base/maths.h"
@@ -13,33 +10,12 @@
 namespace smokebox {
 
 namespace {
-// A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
-// are fewer than the second number.
-constexpr long kManySweeps = 6000, kManySweepsOfFew = 10000, kTwoSweeps = 30000;
-// Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
-constexpr double kSettled = 1e-3;
-// ... or by this share of what the first sweep changed beyond that: of impacts.
-constexpr double kSettledShare = 1e-2;
-// So many sweeps are made before the further ones are drawn along a conjugate direction.
-constexpr int kPlainSweeps = 3;
-// Beyond these sweeps there are so many more over those places alone where velocities change by this share of
-// the bodies' width in a sub-step; a place: by this share of that.
-constexpr int kRoughSweeps = 4;
-constexpr double kRough = 3e-3, kRoughPlace = 0.25;
-// Both are this much less for a few points.
-constexpr double kSettledFew = 1e-8;
-constexpr long kFewPoints = 160;
-// Of an overlap, in each sub-step.
-constexpr double kSeparateShare = 0.2;
-// Overlapping bodies are moved apart at this speed at most, m/s.
-constexpr double kSeparateSpeed = 4;
 // Approaches slower than what gravity adds in so many sub-steps do not bounce.
 constexpr double kRestingSubSteps = 2;
 // Contacts that overlap by more than this share of the thinner one's width do not bounce.
 constexpr double kSqueezed = 0.01;
 // What changes a velocity by more than gravity does in so many sub-steps may be a blow.
 constexpr double kForce = 4;
-constexpr int kWalls = 4;
 }  // namespace
 
 RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads)
@@ -123,6 +99,7 @@ void RigidSystem::State::startVelocities(double h) {
   damped = false;
   constexpr double kLeast = 1e-6;  // of a velocity; what is damped more has no past to come from
   drives.resize(bodies.count());
+  halfDrives.resize(bodies.count());
   for (int b = kWalls; b < bodies.count(); ++b) {
     if (!bodies.there[b]) continue;
     Motion& v = bodies.velocity[b];
@@ -132,12 +109,13 @@ void RigidSystem::State::startVelocities(double h) {
       v = {by.x / dt, by.y / dt, (targetAngle[b] - bodies.angleRad[b]) / dt};
     }
     if (!bodies.moves(b)) {
-      drives[b] = {};
+      drives[b] = halfDrives[b] = {};
       continue;
     }
     damped |= def.linearDamping > 0 || def.angularDamping > 0;
-    const Drive now = driveOver(def, 0.5 * h), was = drives[b].half;
-    drives[b] = {driveOver(def, h), now};
+    const Drive now = driveOver(def, 0.5 * h), was = halfDrives[b];
+    drives[b] = driveOver(def, h);
+    halfDrives[b] = now;
     if (fresh[b] & 1) {
       const double back = 1 / std::max(now.linear, kLeast);
       v.x = back * (v.x - now.gain.x);
@@ -152,6 +130,7 @@ void RigidSystem::State::startVelocities(double h) {
 
 void RigidSystem::State::beginStep(double step) {
   dt = timeLeft = step;
+  bodies.takeSurfaces();
   startVelocities(dt / method.subSteps);
   findSeenByForces();
   touches.clear();
@@ -165,14 +144,14 @@ void RigidSystem::State::beginStep(double step) {
   int moving = 0;
   typicalWidth = 0;
   for (int b = 0; b < bodies.count(); ++b) {
-    mayBounce |= bodies.there[b] && bodies.def[b].bounce > 0;
+    mayBounce |= bodies.there[b] && bodies.surface[b].bounce > 0;
     if (!bodies.moves(b)) continue;
     ++moving;
     typicalWidth += bodies.extent[b].thinnest;
   }
   typicalWidth /= std::max(moving, 1);
   bouncing.clear();
-  for (std::size_t k = 0; k < narrow.calm().size(); ++k)
+  for (std::size_t k = 0; mayBounce && k < narrow.calm().size(); ++k)
     if (narrow.calm()[k].bounce > 0) bouncing.push_back(static_cast<int>(k));
   springs.beginStep(bodies, dt, method.subSteps);
   joints.beginStep(bodies, dt, method.subSteps);
@@ -192,7 +171,7 @@ void RigidSystem::State::predict(double h) {
   }
   for (int b = kWalls; b < bodies.count(); ++b) {
     Motion& v = bodies.velocity[b];
-    const Drive& drive = drives[b].whole;
+    const Drive& drive = drives[b];
     v.x = drive.linear * v.x + drive.gain.x;
     v.y = drive.linear * v.y + drive.gain.y;
     v.turn *= drive.angular;
@@ -236,15 +215,15 @@ void RigidSystem::State::impacts(double h) {
     anyStruck = true;
     findWays(h, true);
     giveBackSpare();
-    if (narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) shareKnown = false;
+    if (narrow.stir(bodies, way, broad, gravity, blocks, timeLeft) != NarrowPhase::Stir::none)
+      shareKnown = false;
     narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
   }
 }
 
 // What is pressed into each other and pushed apart already does not bounce: it would be struck over and over.
 bool RigidSystem::State::isSqueezed(const Contact& contact) const {
-  const double deep =
-      -kSqueezed * std::min(bodies.def[contact.a].shape->thinnest, bodies.def[contact.b].shape->thinnest);
+  const double deep = -kSqueezed * thinner(bodies, contact.a, contact.b);
   for (int k = 0; k < contact.count; ++k)
     if (contact.points[k].impulseN > 0 &&
         contact.points[k].gap + gapMoved(bodies, contact, contact.points[k]) < deep)
@@ -253,7 +232,7 @@ bool RigidSystem::State::isSqueezed(const Contact& contact) const {
 }
 
 bool RigidSystem::State::meetsFast(const Contact& contact, double h) const {
-  const double thin = std::min(bodies.def[contact.a].shape->thinnest, bodies.def[contact.b].shape->thinnest);
+  const double thin = thinner(bodies, contact.a, contact.b);
   for (int k = 0; k < contact.count; ++k)
     if (-partingSpeed(bodies, contact, contact.points[k]) * h > kSwept * thin) return true;
   return false;
@@ -266,155 +245,6 @@ void RigidSystem::State::findWays(double h, bool withStruck) {
   }
 }
 
-void RigidSystem::State::warmStartAll(double h) {
-  start = bodies.velocity;
-  if (shareKnown)  // the calm contacts' normals and arms are the same all through the step: so is their sum
-    for (int b = kWalls; b < bodies.count(); ++b) {
-      Motion& v = bodies.velocity[b];
-      v.x += calmShare[b].x;
-      v.y += calmShare[b].y;
-      v.turn += calmShare[b].turn;
-    }
-  else
-    blocks.warmStart(bodies);
-  warmStart(bodies, spare);
-  warmStart(bodies, narrow.lively());
-  springs.warmStart(bodies, h);
-  joints.warmStart(bodies, h);
-}
-
-// Joints that no motion can satisfy (a chain drawn straight between two nails, and something falls on it) ask
-// for impulses without bound: what hangs on joints gets no faster than anything was, but for a little in each
-// sub-step.
-void RigidSystem::State::yieldTorn() {
-  constexpr double kGrowth = 1.25, kMore = 2;  // m/s
-  double fastest = 0;
-  for (int b = 0; b < bodies.count(); ++b)
-    if (bodies.there[b]) fastest = std::max(fastest, length(start[b].linear()));
-  const double most = kGrowth * fastest + kMore;
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    Motion& v = bodies.velocity[b];
-    const double speed = length(v.linear());
-    if (!bodies.moves(b) || speed <= most) continue;
-    v.x *= most / speed;
-    v.y *= most / speed;
-    v.turn *= most / speed;
-  }
-}
-
-void RigidSystem::State::findFlying(double h) {
-  constexpr double kTouch = 1e-3;  // of what gravity does
-  const double least = kTouch * h * length(gravity);
-  for (int b = 0; b < bodies.count(); ++b) {
-    const Motion &v = bodies.velocity[b], &was = start[b];
-    flying[b] = std::abs(v.x - was.x) + std::abs(v.y - was.y) +
-                    bodies.extent[b].reach * std::abs(v.turn - was.turn) <=
-                least;
-  }
-}
-
-void RigidSystem::State::findCalmShare() {
-  // After contacts were dropped or found anew, not all that the velocities gained is on record.
-  shareKnown = springs.empty() && joints.empty() && !stirred;
-  if (!shareKnown) return;
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    const Motion &v = bodies.velocity[b], &was = start[b];
-    calmShare[b] = {v.x - was.x, v.y - was.y, v.turn - was.turn};
-  }
-  auto takeOut = [&](const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts)
-      for (int k = 0; k < contact.count; ++k) {
-        const ContactPoint& p = contact.points[k];
-        const Vec2 j = p.impulseN * contact.normal + p.impulseT * perpendicular(contact.normal);
-        auto one = [&](int body, Vec2 arm, double sign) {
-          const InverseMass& m = bodies.inverse[body];
-          calmShare[body].x -= sign * m.mass * j.x;
-          calmShare[body].y -= sign * m.mass * j.y;
-          calmShare[body].turn -= sign * m.inertia * cross(arm, j);
-        };
-        one(contact.a, p.armA, -1);
-        one(contact.b, p.armB, 1);
-      }
-  };
-  takeOut(spare);
-  takeOut(narrow.lively());
-}
-
-double RigidSystem::State::sweep(double h, bool first) {
-  double change = 0;
-  if (!joints.empty()) change = std::max(change, joints.solve(bodies, h));
-  if (!springs.empty()) change = std::max(change, springs.solve(bodies, h));
-  change = std::max(change, blocks.solve(bodies, h, first));
-  change = std::max(change, solve(bodies, spare));
-  change = std::max(change, solve(bodies, narrow.lively()));
-  return change;
-}
-
-// Where heaps land there is no time for sweeps until all is settled, but none may sink into another: those
-// places are gone over some more times.
-void RigidSystem::State::sweepRough(double h, double change) {
-  const double rough = kRough * typicalWidth / h;
-  for (int more = 0; more < kRoughSweeps && change > rough; ++more) {
-    change = blocks.solve(bodies, h, false, kRoughPlace * rough);
-    change = std::max(change, solve(bodies, spare));
-    change = std::max(change, solve(bodies, narrow.lively()));
-  }
-}
-
-void RigidSystem::State::solveContacts(double h) {
-  warmStartAll(h);
-  auto points = [&] {
-    return 1 + blocks.points() + 8 * static_cast<long>(spare.size() + narrow.lively().size());
-  };
-  // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
-  const bool few = points() <= kFewPoints && blocks.empty() && springs.empty() && joints.empty();
-  const double care = few ? kSettledFew : 1;
-  double settled = care * kSettled * (1 + 1e-3 * points()) * h * length(gravity) + care * 1e-9;
-  const bool accelerates = !few && springs.empty() && joints.empty();
-  stirred = false;
-  prepare(bodies, spare, h);
-  long left = few ? kManySweepsOfFew : kManySweeps;
-  for (int round = 0; round < 3; ++round) {
-    prepare(bodies, narrow.lively(), h);
-    const long work = points(), cost = work + springs.sweepCost();
-    conjugate.restart();
-    for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
-      if (accelerates && sweeps >= kPlainSweeps) conjugate.remember(bodies, blocks, spare, narrow.lively());
-      const double change = sweep(h, round == 0 && sweeps == 1);
-      left -= cost;
-      if (sweeps == 1)
-        settled =
-            std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
-      if (change <= settled) break;
-      if (left < cost && (sweeps > 1 || work > kTwoSweeps)) {
-        sweepRough(h, change);
-        break;
-      }
-      if (accelerates && sweeps >= kPlainSweeps)
-        conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
-    }
-    findWays(h, false);
-    giveBackSpare();
-    // Who would stray from the way expected of it has its pairs looked at again, before it moves.
-    if (!narrow.stir(bodies, way, broad, gravity, blocks, timeLeft)) break;
-    stirred = true;
-    for (std::size_t k = 0; k < spare.size(); ++k)
-      if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
-    narrow.refresh(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
-  }
-  if (firstOfStep) {
-    if (!springs.empty()) springs.takeBackHalf(bodies, fresh, h);
-    std::fill(fresh.begin(), fresh.end(), 0);
-    firstOfStep = false;
-  }
-  if (!joints.empty()) yieldTorn();
-  narrow.yieldCrushed(bodies, start);
-  press.yield(bodies);
-  if (mayBounce) findFlying(h);
-  findWays(h, false);
-  findCalmShare();
-}
-
 void RigidSystem::State::move(double h) {
   narrow.stopPassing(bodies, broad, h, anyStruck ? &impact.moments() : nullptr, way);
   for (int b = kWalls; b < bodies.count(); ++b) {
@@ -424,11 +254,10 @@ void RigidSystem::State::move(double h) {
     m.turn += way[b].turn;
   }
   const double most = kSeparateSpeed * h;
-  blocks.separate(bodies, 0.5 * h * h * length(gravity), kSeparateShare, most);
   separate(bodies, spare, kSeparateShare, most);
   separate(bodies, narrow.lively(), kSeparateShare, most);
   keepInside();
-  collectTouches(narrow.lively());
+  for (const Contact& contact : narrow.lively()) collectTouch(contact);
   narrow.advance();
   timeLeft -= h;
 }
@@ -456,34 +285,19 @@ void RigidSystem::State::keepInside() {
   }
 }
 
-void RigidSystem::State::collectTouches(const std::vector<Contact>& contacts) {
-  for (const Contact& contact : contacts) {
-    if (contact.total <= 0) continue;
-    Touch touch;
-    touch.a = contact.a < kWalls ? -1 : contact.a;
-    touch.b = contact.b < kWalls ? -1 : contact.b;
-    Vec2 point{};
-    for (int k = 0; k < contact.count; ++k)
-      point = point + (1.0 / contact.count) * (bodies.positionNow(contact.a) + contact.points[k].armA);
-    touch.point = point;
-    touch.normal = contact.normal;
-    touch.impulse = contact.total;
-    touch.approach = contact.approach;
-    touches.push_back(touch);
-  }
-}
-
-// Writes the impulses of those that are solved one by one where the others' are: whoever drops them finds
-// them.
-void RigidSystem::State::giveBackSpare() {
-  for (std::size_t k = 0; k < spare.size(); ++k) {
-    Contact& to = narrow.calm()[uncoloured[k]];
-    for (int p = 0; p < spare[k].count; ++p) {
-      to.points[p].impulseN = spare[k].points[p].impulseN;
-      to.points[p].impulseT = spare[k].points[p].impulseT;
-    }
-    to.total += std::exchange(spare[k].total, 0);
-  }
+void RigidSystem::State::collectTouch(const Contact& contact) {
+  if (contact.total <= 0) return;
+  Touch touch;
+  touch.a = contact.a < kWalls ? -1 : contact.a;
+  touch.b = contact.b < kWalls ? -1 : contact.b;
+  Vec2 point{};
+  for (int k = 0; k < contact.count; ++k)
+    point = point + (1.0 / contact.count) * (bodies.positionNow(contact.a) + contact.points[k].armA);
+  touch.point = point;
+  touch.normal = contact.normal;
+  touch.impulse = contact.total;
+  touch.approach = contact.approach;
+  touches.push_back(touch);
 }
 
 // Half a sub-step of what the body does by itself, and half of what the last one gave it beyond that, as long
@@ -493,7 +307,7 @@ void RigidSystem::State::findAhead(int body, double h) {
   ahead[body] = {};
   if (!bodies.moves(body)) return;
   const Motion &v = bodies.velocity[body], &was = before[body], &earlier = beforeThat[body];
-  const Drive &whole = drives[body].whole, &half = drives[body].half;
+  const Drive &whole = drives[body], &half = halfDrives[body];
   const Motion own{(half.linear - 1) * v.x + half.gain.x, (half.linear - 1) * v.y + half.gain.y,
                    (half.angular - 1) * v.turn};
   if (anyStruck && impact.wasStruck(body)) {
@@ -505,7 +319,7 @@ void RigidSystem::State::findAhead(int body, double h) {
             to.turn - whole.angular * from.turn};
   };
   const Motion now = given(was, v), last = method.subSteps > 1 ? given(earlier, was) : now;
-  const double reach = bodies.def[body].shape->reach, small = kForce * h * length(gravity);
+  const double reach = bodies.extent[body].reach, small = kForce * h * length(gravity);
   auto size = [&](const Motion& m) { return length(m.linear()) + reach * std::abs(m.turn); };
   const Motion change{now.x - last.x, now.y - last.y, now.turn - last.turn};
   if (size(now) > small && size(change) > 0.5 * size(last)) return;
@@ -513,7 +327,6 @@ void RigidSystem::State::findAhead(int body, double h) {
 }
 
 void RigidSystem::State::endStep(double step) {
-  blocks.readBack(narrow.calm());
   giveBackSpare();
   contactTotals = {};
   const bool pressing = press.begin(bodies);
@@ -526,15 +339,19 @@ void RigidSystem::State::endStep(double step) {
       contactTotals.overlap = std::max(contactTotals.overlap, -gap);
     }
   };
-  for (std::size_t k = 0; k < narrow.calm().size(); ++k)
-    if (!narrow.isDropped(static_cast<int>(k))) count(narrow.calm()[k]);
   for (const Contact& contact : narrow.lively()) count(contact);
+  for (std::size_t k = 0; k < narrow.calm().size(); ++k) {
+    Contact& contact = narrow.calm()[k];
+    blocks.readBack(static_cast<int>(k), contact);
+    if (!narrow.isDropped(static_cast<int>(k))) count(contact);
+    collectTouch(contact);
+    bringUpToDate(bodies, contact);  // it may be used again
+  }
   if (pressing) press.end(bodies);
-  collectTouches(narrow.calm());
   // Touches of one pair within the step become one.
   std::stable_sort(touches.begin(), touches.end(),
                    [](const Touch& p, const Touch& q) { return p.a < q.a || (p.a == q.a && p.b < q.b); });
-  narrow.endStep(bodies, broad);
+  narrow.endStep(broad);
   springs.endStep(bodies);
   joints.endStep(bodies);
   if (damped) bodies.inverse.swap(forImpacts);
@@ -543,7 +360,7 @@ void RigidSystem::State::endStep(double step) {
     if (!bodies.there[b]) continue;
     findAhead(b, dt / method.subSteps);
     const Motion &v = bodies.velocity[b], &m = bodies.moved[b];
-    if (bodies.def[b].mass <= 0) {
+    if (bodies.surface[b].isDriven) {
       bodies.position[b] = targetPlace[b];
       bodies.angleRad[b] = targetAngle[b];
     } else {
@@ -564,7 +381,7 @@ void RigidSystem::State::endStep(double step) {
 }
 
 void RigidSystem::State::wrap(int body) {
-  if (bodies.def[body].mass <= 0) return;
+  if (bodies.surface[body].isDriven) return;
   Vec2& x = bodies.position[body];
   if (walls.sides[0] == RigidWalls::Kind::periodic) x.x -= walls.width * std::floor(x.x / walls.width);
   if (walls.sides[2] == RigidWalls::Kind::periodic) x.y -= walls.height * std::floor(x.y / walls.height);

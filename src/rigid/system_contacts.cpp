@@ -1,0 +1,205 @@
+// The stage of a sub-step that makes velocities obey contacts, joints and springs.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rigid/contact_sweeps.h"
+#include "rigid/system_state.h"
+
+namespace smokebox {
+
+namespace {
+// A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
+// are fewer than the second number.
+constexpr long kManySweeps = 6000, kManySweepsOfFew = 10000, kTwoSweeps = 30000;
+// Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
+constexpr double kSettled = 1e-3;
+// ... or by this share of what the first sweep changed beyond that: of impacts.
+constexpr double kSettledShare = 1e-2;
+// Both are this much less for a few points.
+constexpr double kSettledFew = 1e-8;
+constexpr long kFewPoints = 160;
+// So many sweeps are made before the further ones are drawn along a conjugate direction.
+constexpr int kPlainSweeps = 3;
+// Beyond these sweeps there are so many more over those places alone where velocities change by this share of
+// the bodies' width in a sub-step; a place: by this share of that.
+constexpr int kRoughSweeps = 8;
+constexpr double kRough = 3e-3, kRoughPlace = 0.1;
+}  // namespace
+
+void RigidSystem::State::warmStartAll(double h) {
+  start = bodies.velocity;
+  if (shareKnown)  // the calm contacts' normals and arms are the same all through the step: so is their sum
+    for (int b = kWalls; b < bodies.count(); ++b) {
+      Motion& v = bodies.velocity[b];
+      v.x += calmShare[b].x;
+      v.y += calmShare[b].y;
+      v.turn += calmShare[b].turn;
+    }
+  else
+    blocks.warmStart(bodies);
+  warmStart(bodies, spare);
+  warmStart(bodies, narrow.lively());
+  springs.warmStart(bodies, h);
+  joints.warmStart(bodies, h);
+}
+
+// Joints that no motion can satisfy (a chain drawn straight between two nails, and something falls on it) ask
+// for impulses without bound: what hangs on joints gets no faster than anything was, but for a little in each
+// sub-step.
+void RigidSystem::State::yieldTorn() {
+  constexpr double kGrowth = 1.25, kMore = 2;  // m/s
+  double fastest = 0;
+  for (int b = 0; b < bodies.count(); ++b)
+    if (bodies.there[b]) fastest = std::max(fastest, length(start[b].linear()));
+  const double most = kGrowth * fastest + kMore;
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    Motion& v = bodies.velocity[b];
+    const double speed = length(v.linear());
+    if (!bodies.moves(b) || speed <= most) continue;
+    v.x *= most / speed;
+    v.y *= most / speed;
+    v.turn *= most / speed;
+  }
+}
+
+void RigidSystem::State::findFlying(double h) {
+  constexpr double kTouch = 1e-3;  // of what gravity does
+  const double least = kTouch * h * length(gravity);
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Motion &v = bodies.velocity[b], &was = start[b];
+    flying[b] = std::abs(v.x - was.x) + std::abs(v.y - was.y) +
+                    bodies.extent[b].reach * std::abs(v.turn - was.turn) <=
+                least;
+  }
+}
+
+void RigidSystem::State::findCalmShare() {
+  // After contacts were dropped or found anew, not all that the velocities gained is on record.
+  shareKnown = springs.empty() && joints.empty() && !stirred;
+  if (!shareKnown) return;
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    const Motion &v = bodies.velocity[b], &was = start[b];
+    calmShare[b] = {v.x - was.x, v.y - was.y, v.turn - was.turn};
+  }
+  auto takeOut = [&](const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts)
+      for (int k = 0; k < contact.count; ++k) {
+        const ContactPoint& p = contact.points[k];
+        const Vec2 j = p.impulseN * contact.normal + p.impulseT * perpendicular(contact.normal);
+        auto one = [&](int body, Vec2 arm, double sign) {
+          const InverseMass& m = bodies.inverse[body];
+          calmShare[body].x -= sign * m.mass * j.x;
+          calmShare[body].y -= sign * m.mass * j.y;
+          calmShare[body].turn -= sign * m.inertia * cross(arm, j);
+        };
+        one(contact.a, p.armA, -1);
+        one(contact.b, p.armB, 1);
+      }
+  };
+  takeOut(spare);
+  takeOut(narrow.lively());
+}
+
+double RigidSystem::State::sweep(double h, bool first) {
+  double change = 0;
+  if (!joints.empty()) change = std::max(change, joints.solve(bodies, h));
+  if (!springs.empty()) change = std::max(change, springs.solve(bodies, h));
+  const ContactBlocks::Apart apart{0.5 * h * h * length(gravity), kSeparateShare, kSeparateSpeed * h};
+  change = std::max(change, blocks.solve(bodies, h, first ? &apart : nullptr));
+  change = std::max(change, solve(bodies, spare));
+  change = std::max(change, solve(bodies, narrow.lively()));
+  return change;
+}
+
+// Where heaps land there is no time for sweeps until all is settled, but none may sink into another: those
+// places are gone over some more times.
+void RigidSystem::State::sweepRough(double h, double change) {
+  const double enough = kRough * typicalWidth / h, place = kRoughPlace * enough;
+  if (change <= enough) return;
+  blocks.beginRough(place);
+  rough.clear();
+  for (std::vector<Contact>* contacts : {&spare, &narrow.lively()})
+    for (Contact& contact : *contacts)
+      if (contact.change >= place) rough.push_back(&contact);
+  for (int more = 0; more < kRoughSweeps && change > enough; ++more) {
+    change = blocks.solveRough(bodies, h, place);
+    std::size_t kept = 0;
+    for (Contact* contact : rough) {
+      change = std::max(change, solve(bodies, *contact));
+      if (contact->change >= place) rough[kept++] = contact;
+    }
+    rough.resize(kept);
+  }
+}
+
+void RigidSystem::State::solveContacts(double h) {
+  warmStartAll(h);
+  auto points = [&] {
+    return 1 + blocks.points() + 8 * static_cast<long>(spare.size() + narrow.lively().size());
+  };
+  // The more there are, the less it matters that each one is settled to the last; few are solved to rounding.
+  const bool few = points() <= kFewPoints && blocks.empty() && springs.empty() && joints.empty();
+  const double care = few ? kSettledFew : 1;
+  double settled = care * kSettled * (1 + 1e-3 * points()) * h * length(gravity) + care * 1e-9;
+  const bool accelerates = !few && springs.empty() && joints.empty();
+  stirred = false;
+  prepare(bodies, spare, h);
+  long left = few ? kManySweepsOfFew : kManySweeps;
+  for (int round = 0; round < 3; ++round) {
+    prepare(bodies, narrow.lively(), h);
+    const long work = points(), cost = work + springs.sweepCost();
+    conjugate.restart();
+    for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
+      if (accelerates && sweeps >= kPlainSweeps) conjugate.remember(bodies, blocks, spare, narrow.lively());
+      const double change = sweep(h, round == 0 && sweeps == 1);
+      left -= cost;
+      if (sweeps == 1)
+        settled =
+            std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
+      if (change <= settled) break;
+      if (left < cost && (sweeps > 1 || work > kTwoSweeps)) {
+        sweepRough(h, change);
+        break;
+      }
+      if (accelerates && sweeps >= kPlainSweeps)
+        conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
+    }
+    findWays(h, false);
+    giveBackSpare();
+    // Who would stray from the way expected of it has its pairs looked at again, before it moves.
+    const auto stir = narrow.stir(bodies, way, broad, gravity, blocks, timeLeft);
+    if (stir == NarrowPhase::Stir::none) break;
+    stirred = true;
+    for (std::size_t k = 0; k < spare.size(); ++k)
+      if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
+    if (stir == NarrowPhase::Stir::later) break;
+    narrow.refreshNew(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
+  }
+  if (firstOfStep) {
+    if (!springs.empty()) springs.takeBackHalf(bodies, fresh, h);
+    std::fill(fresh.begin(), fresh.end(), 0);
+    firstOfStep = false;
+  }
+  if (!joints.empty()) yieldTorn();
+  narrow.yieldCrushed(bodies, start);
+  press.yield(bodies);
+  if (mayBounce) findFlying(h);
+  findWays(h, false);
+  findCalmShare();
+}
+
+// Writes the impulses of those that are solved one by one where the others' are: whoever drops them finds
+// them.
+void RigidSystem::State::giveBackSpare() {
+  for (std::size_t k = 0; k < spare.size(); ++k) {
+    Contact& to = narrow.calm()[uncoloured[k]];
+    for (int p = 0; p < spare[k].count; ++p) {
+      to.points[p].impulseN = spare[k].points[p].impulseN;
+      to.points[p].impulseT = spare[k].points[p].impulseT;
+    }
+    to.total += std::exchange(spare[k].total, 0);
+  }
+}
+
+}  // namespace smokebox
