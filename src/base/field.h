@@ -16,7 +16,7 @@ namespace smokebox {
 class Field {
  public:
   static constexpr int kMarginX = 16;  // one cache line: rows stay aligned, stencils and vectors may overrun
-  static constexpr int kMarginY = 4;   // the widest stencil reaches three rows
+  static constexpr int kMarginY = 5;   // the widest stencil reaches four rows from the face beyond the rim
 
   Field() = default;
   /// nx x ny cells, everything (margin too) set to `value`.
