@@ -2,9 +2,8 @@
 //
 //   sum over the faces of a cell of  open (x(cell) - x(neighbour)) = b(cell),   x = 0 beyond an open side
 //
-// A V-cycle, or for far starts a W-cycle. Links of coarse levels are at least half of what the fine ones they
-// stand for add up to: a coarse correction so goes less than twice too far, and a second one stays positive,
-// if all levels below are visited twice, too.
+// A V-cycle. Links of coarse levels are at least half of what the fine ones they stand for add up to: a
+// coarse correction so goes less than twice too far, and conjugate gradients stay safe.
 //
 // Red-black Gauss-Seidel (mirrored after the coarse correction), more sweeps in a band along solids (McAdams
 // 2010), piecewise constant transfer, coarse cells split along solids (Dick, Rogowsky and Westermann 2016),
@@ -42,10 +41,12 @@ class Multigrid {
   multigrid::Level& finest() { return levels_.front(); }
   const multigrid::Level& finest() const { return levels_.front(); }
 
-  /// x = M b by one cycle; returns the sum of x b. `twice`: visits each level from the third coarser one on
-  /// twice as often as the one above it (a W-cycle): conjugate gradients then take as many iterations on any
-  /// grid, a fifth fewer of them, for up to a third more time each.
-  double cycle(bool twice = false);
+  /// What conjugate gradients need of x: the sums of x b and of x A x.
+  struct Products {
+    double withResidual = 0, curvature = 0;
+  };
+  /// x = M b by one cycle. `measured`: returns the products, found row by row on the way.
+  Products cycle(bool measured = true);
 
   std::size_t bytes() const;
 
@@ -53,13 +54,9 @@ class Multigrid {
   void shape(const Boundary& boundary);
   void listSealed();
   void balance(multigrid::Floats& values) const;
-  void visit(std::size_t l, bool twice);
-  /// Puts x and b of a level by, and its residual in the place of b.
-  void keepResidual(multigrid::Level& level);
-  /// Adds to x what was put by, and takes b back.
-  void addToKept(multigrid::Level& level);
+  void visit(std::size_t l, bool measured);
   void descend(std::size_t l);
-  void ascend(std::size_t l);
+  void ascend(std::size_t l, bool measured);
   /// Large enough to be spread over several threads.
   bool shared(const multigrid::Level& level) const;
   /// Does the stages 0 to `stages` - 1 for all rows, each after the stage before of the rows beside it and
@@ -81,7 +78,7 @@ class Multigrid {
   std::vector<std::vector<int>> labels_;  // scratch of listSealed, by level
   const float* zeroRow() const { return zeroRow_.data() + multigrid::kLanes; }
   std::vector<float> zeroRow_;
-  std::vector<double> rowSums_;
+  std::vector<Products> rowProducts_;
 };
 
 /// Calls body(j) for the rows [first, last) of a grid with `cells` cells: spread over the threads if that is

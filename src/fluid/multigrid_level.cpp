@@ -62,7 +62,7 @@ std::size_t Level::bytes() const {
          bytesOf(specialShare) + bytesOf(specialPairs) + bytesOf(specialPairBegin) + bytesOf(star) +
          bytesOf(starred) + bytesOf(bandCells) + bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) +
          bytesOf(prolongBegin) + bytesOf(prolong) + bytesOf(splitBegin) + bytesOf(split) + bytesOf(child) +
-         bytesOf(residual) + bytesOf(residualExtra) + bytesOf(onceX) + bytesOf(onceB) + bytesOf(middle);
+         bytesOf(residual) + bytesOf(residualExtra) + bytesOf(middle);
 }
 
 }  // namespace smokebox::multigrid

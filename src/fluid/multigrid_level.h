@@ -165,7 +165,6 @@ struct Level {
   std::vector<Split> split;
   std::vector<int> child;  // 4 i + row within the block of a primary unknown, ~k of the extra unknown k
 
-  Floats onceX, onceB;        // put by between the first and the second visit of a W-cycle
   std::vector<float> middle;  // scratch: what two rows of one colour held before a sweep
 
   // ---- residual: whole rows; as many as a coarse row has are enough where the sweeps are fused

@@ -28,9 +28,6 @@ constexpr double kSafety = 0.7;
 // In float32 the running residual parts from the true one by about this share of the solution's largest
 // value.
 constexpr double kRounding = 2.5e-7;
-// From a start this far above the target a W-cycle saves iterations. A step of a flow starts nearer: there it
-// saves none.
-constexpr double kFar = 3e4;
 
 double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
@@ -40,7 +37,6 @@ struct PressureSolver::Impl {
   Impl(const Boundary& boundary, ThreadPool& threads)
       : pool(threads), multigrid(boundary, threads), flux(boundary, threads) {
     solution = direction = increment = multigrid.finest().x;
-    rows.resize(boundary.grid.ny);
     advances.resize(boundary.grid.ny);
     overlaps.resize(boundary.grid.ny);
     regions.rebuild(boundary, multigrid.finest());
@@ -50,7 +46,6 @@ struct PressureSolver::Impl {
     multigrid.rebuild(boundary);
     regions.rebuild(boundary, multigrid.finest());
     const std::size_t size = static_cast<std::size_t>(multigrid.finest().extrasBegin);
-    rows.resize(boundary.grid.ny);
     advances.resize(boundary.grid.ny);
     overlaps.resize(boundary.grid.ny);
     for (Floats* f : {&solution, &direction, &increment}) f->assign(size, 0);
@@ -63,25 +58,34 @@ struct PressureSolver::Impl {
   };
   Source source(const Boundary& boundary, const PressureFlux::Largest& measured);
 
-  /// Conjugate gradients for the right-hand side in b, until the largest residual is at most `target`; the
-  /// solution is left in `solution`. Returns the number of iterations. `onward`: b is what the last solve has
-  /// left, computed anew; goes on in conjugate directions instead of starting over, which would cost an
-  /// iteration or two (residual replacement, van der Vorst and Ye 2000).
-  int solve(double start, double target, int maxIterations, bool onward = false);
+  /// Conjugate gradients for the right-hand side in b, until the largest residual is at most `target` (0: all
+  /// of them, and b is not followed to the last); the solution is left in `solution` once its rows are
+  /// finished. Both products of a step are found at once (Chronopoulos and Gear 1989). Returns the number of
+  /// iterations. `onward`: b is what the last solve has left, computed anew; goes on in conjugate directions
+  /// instead of starting over, which would cost an iteration or two (residual replacement, van der Vorst and
+  /// Ye 2000).
+  int solve(double target, int maxIterations, bool onward = false);
   /// Products of the last direction with A correction and with the residual.
   struct Overlap {
     double withCorrection = 0, withResidual = 0;
   };
+  /// Products of the last direction with A correction and with the residual.
   Overlap overlapOfDirection();
-  /// direction = x + beta direction; returns its product with A direction.
-  double advanceDirection(float beta);
-  /// solution += alpha direction (from 0 if it is the first), b -= alpha A direction (computed again: cheaper
-  /// than to keep it). b is left alone if this is the last step.
+  /// One step of alpha along the next direction, correction + beta (the last one): b -= alpha A direction.
+  /// The solution follows every other step, by two directions at once.
   struct Advance {
-    double residual = 0, solution = 0;  // largest |b|, and largest |solution| if it is the first
+    double residual = 0, solution = 0;  // largest |b|, and largest |solution| if it is the first step
   };
-  Advance advanceSolution(float alpha, bool first, bool last);
-  /// Takes the mean off a solution in sealed regions, and copies it beyond the sides.
+  Advance advance(float alpha, float beta, bool first);
+  /// Brings what is due into row j of the solution.
+  void finishRow(int j);
+  /// Whether rows of the solution may be finished just before they are used.
+  bool finishesByRow() const {
+    return pool.threads() == 1 && !multigrid.finest().periodicY && !regions.anySealed();
+  }
+  /// Else all at once.
+  void finish();
+  /// Takes the mean off values in sealed regions, and copies them beyond the sides.
   void centre(Floats& values);
   /// phi += gain x, in row j.
   void addToRow(const Floats& x, Field& phi, float gain, int j) const;
@@ -94,11 +98,18 @@ struct PressureSolver::Impl {
   PressureFlux flux;
   Floats solution, direction;  // on the finest level's grid
   double curvature = 0;        // product of the last direction with A direction
-  bool far = false;            // the solve started far from its target
+  // What the solution still has to get: these multiples of the last direction and of the correction.
+  struct Due {
+    bool any = false, toNothing = false;  // toNothing: the solution holds nothing yet
+    float ofDirection = 0, ofCorrection = 0;
+  };
+  Due due;
+  bool far = false;  // the solve started far from its target
   // What the last projection of a step has found in all: the start of the next one, unless the links change.
   Floats increment;
   bool predictable = false;
-  std::vector<double> rows, sums;
+  bool incrementEmpty = false;  // whatever it holds
+  std::vector<double> sums;
   std::vector<Advance> advances;
   std::vector<Overlap> overlaps;
 };
@@ -144,28 +155,43 @@ PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& bounda
   return result;
 }
 
-double PressureSolver::Impl::advanceDirection(float beta) {
+PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float beta, bool first) {
   Level& level = multigrid.finest();
-  const int ny = level.ny;
-  const int width = level.chunks * kLanes;
+  const int ny = level.ny, width = level.chunks * kLanes;
+  const bool alone = beta == 0 && !due.any;
+  if (alone) direction.swap(level.x);
+  const Due before = due;
+  due = before.any ? Due{} : Due{true, first, alpha, 0};
   const auto combine = [&](int j) {
-    float* p = level.row(direction, j);
+    float *p = level.row(direction, j), *x = level.row(solution, j);
     const float* z = level.row(level.x, j);
-    for (int i = 0; i < width; i += kLanes) store(p + i, load(z + i) + beta * load(p + i));
+    for (int i = 0; i < width; i += kLanes) {
+      const Lanes last = load(p + i), next = load(z + i) + beta * last;
+      store(p + i, next);
+      if (!before.any) continue;
+      const Lanes step = before.ofDirection * last + alpha * next;
+      store(x + i, before.toNothing ? step : load(x + i) + step);
+    }
     level.wrapRow(p);
   };
   const auto apply = [&](int j) {
-    Lanes sum = {};
+    float* r = level.b.data();
+    const float* p = direction.data();
     const std::uint8_t* kind = level.chunkRow(j);
+    Lanes residual = {}, size = {};
     for (int c = 0; c < level.chunks; ++c) {
       if (kind[c] & kEmpty) continue;
-      const std::ptrdiff_t offset = level.at(c * kLanes, j);
-      const Lanes value = applyChunk(level, kind[c], direction.data(), offset);
-      sum += value * load(direction.data() + offset);
+      const std::ptrdiff_t i = level.at(c * kLanes, j);
+      const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
+      store(r + i, value);
+      residual = multigrid::larger(multigrid::magnitude(value), residual);
+      if (first) size = multigrid::larger(multigrid::magnitude(alpha * load(p + i)), size);
     }
-    rows[j] = multigrid::sumOfLanes(sum);
+    advances[j] = {multigrid::largestLane(residual), multigrid::largestLane(size)};
   };
-  if (pool.threads() == 1 && !level.periodicY) {
+  if (alone) {
+    forRows(pool, static_cast<long>(level.nx) * ny, 0, ny, apply);
+  } else if (pool.threads() == 1 && !level.periodicY) {
     for (int j = 0; j <= ny; ++j) {
       if (j < ny) combine(j);
       if (j > 0) apply(j - 1);
@@ -175,41 +201,31 @@ double PressureSolver::Impl::advanceDirection(float beta) {
     level.wrapRows(direction);
     forRows(pool, static_cast<long>(level.nx) * ny, 0, ny, apply);
   }
-  double total = 0;
-  for (double r : rows) total += r;
-  return total;
-}
-
-PressureSolver::Impl::Advance PressureSolver::Impl::advanceSolution(float alpha, bool first, bool last) {
-  Level& level = multigrid.finest();
-  forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
-    float *x = solution.data(), *r = level.b.data();
-    const float* p = direction.data();
-    const std::uint8_t* kind = level.chunkRow(j);
-    Lanes residual = {}, size = {};
-    for (int c = 0; c < level.chunks; ++c) {
-      if (kind[c] & kEmpty) continue;
-      const std::ptrdiff_t i = level.at(c * kLanes, j);
-      const Lanes step = alpha * load(p + i);
-      if (first) {
-        store(x + i, step);
-        size = multigrid::larger(multigrid::magnitude(step), size);
-      } else {
-        store(x + i, load(x + i) + step);
-      }
-      if (last) continue;
-      const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
-      store(r + i, value);
-      residual = multigrid::larger(multigrid::magnitude(value), residual);
-    }
-    advances[j] = {multigrid::largestLane(residual), multigrid::largestLane(size)};
-  });
   Advance most;
   for (const Advance& row : advances) {
     most.residual = largerOf(row.residual, most.residual);
     most.solution = largerOf(row.solution, most.solution);
   }
   return most;
+}
+
+void PressureSolver::Impl::finishRow(int j) {
+  Level& level = multigrid.finest();
+  float* x = level.row(solution, j);
+  const float *p = level.row(direction, j), *z = level.row(level.x, j);
+  for (int i = 0; due.any && i < level.chunks * kLanes; i += kLanes) {
+    Lanes step = due.ofDirection * load(p + i);
+    if (due.ofCorrection != 0) step += due.ofCorrection * load(z + i);
+    store(x + i, due.toNothing ? step : load(x + i) + step);
+  }
+  level.wrapRow(x);
+}
+
+void PressureSolver::Impl::finish() {
+  Level& level = multigrid.finest();
+  forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) { finishRow(j); });
+  due = {};
+  centre(solution);
 }
 
 void PressureSolver::Impl::centre(Floats& values) {
@@ -236,6 +252,10 @@ void PressureSolver::Impl::rememberRow(int j) {
   const auto add = [&](int row) {
     float* sum = level.row(increment, row) - 1;
     const float* x = level.row(solution, row) - 1;
+    if (incrementEmpty) {
+      std::copy_n(x, level.nx + 2, sum);
+      return;
+    }
 #pragma omp simd
     for (int i = 0; i < level.nx + 2; ++i) sum[i] += x[i];
   };
@@ -273,32 +293,45 @@ PressureSolver::Impl::Overlap PressureSolver::Impl::overlapOfDirection() {
   return total;
 }
 
-int PressureSolver::Impl::solve(double start, double target, int maxIterations, bool onward) {
-  double product = 0, enough = target;
-  if (!onward) far = start > kFar * target && target > 0;
+int PressureSolver::Impl::solve(double target, int maxIterations, bool onward) {
+  double product = 0, alpha = 0, enough = target;
+  due = {};
   int iteration = 0;
   while (iteration < maxIterations) {
-    const double next = multigrid.cycle(far);
+    const Multigrid::Products found = multigrid.cycle();
+    const double next = found.withResidual;
     if (!(next > 0)) break;  // nothing left to correct, or not a number
-    double beta = iteration == 0 ? 0 : next / product, slope = next;
-    if (iteration == 0 && onward && curvature > 0) {
-      const Overlap overlap = overlapOfDirection();
-      beta = -overlap.withCorrection / curvature;
-      slope += beta * overlap.withResidual;
+    // The product of the correction with A (last direction): the last step took alpha times that off b, and
+    // what b was before has no product with the correction.
+    double beta = 0, slope = next, overlap = 0;
+    if (iteration > 0) {
+      beta = next / product;
+      overlap = -next / alpha;
+    } else if (onward && curvature > 0) {
+      const Overlap measured = overlapOfDirection();
+      overlap = measured.withCorrection;
+      beta = -overlap / curvature;
+      slope += beta * measured.withResidual;
     }
-    curvature = advanceDirection(static_cast<float>(beta));
-    if (!(curvature > 0)) break;
+    const double bent = found.curvature + beta * (2 * overlap + beta * curvature);
+    if (!(bent > 0)) break;
+    curvature = bent;
     product = next;
+    alpha = slope / curvature;
     ++iteration;
-    const Advance done = advanceSolution(static_cast<float>(slope / curvature), iteration == 1,
-                                         target == 0 && iteration == maxIterations);
+    const auto step = static_cast<float>(alpha), share = static_cast<float>(beta);
+    if (target == 0 && iteration == maxIterations) {
+      due = {true, due.toNothing || iteration == 1, (due.any ? due.ofDirection : 0.0f) + step * share, step};
+      break;
+    }
+    const Advance done = advance(step, share, iteration == 1);
     // Where rounding would reach the target, the residual is computed anew before.
     if (iteration == 1 && kRounding * done.solution > 0.3 * target)
       enough = std::max(target, 4 * kRounding * done.solution);
     if (!(done.residual > enough)) break;
   }
   if (iteration == 0) std::fill(solution.begin(), solution.end(), 0.0f);
-  centre(solution);
+  if (!finishesByRow()) finish();
   return iteration;
 }
 
@@ -316,11 +349,12 @@ PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& 
   s.flux.closeFaces(boundary, level, u, v);
   PressureFlux::Largest measured;
   if (s.predictable) {
-    measured = s.flux.subtractAndMeasure(boundary, level, s.increment, u, v, level.b, [](int) {});
+    measured = s.flux.subtractAndMeasure(
+        boundary, level, s.increment, u, v, level.b, [](int) {}, [](int) {});
   } else {
-    std::fill(s.increment.begin(), s.increment.end(), 0.0f);
     measured = s.flux.measure(boundary, level, u, v, level.b);
   }
+  s.incrementEmpty = !s.predictable;
   s.predictable = true;
   Result result;
   double before = std::numeric_limits<double>::infinity();
@@ -338,13 +372,16 @@ PressureSolver::Result PressureSolver::project(const Boundary& boundary, Field& 
     const bool stalled = source.flux > 0.5 * before;
     if (result.converged || stalled || result.iterations >= maxIterations) break;
     before = source.flux;
-    const int done = s.solve(source.flux, kSafety * tolerance * speed, maxIterations - result.iterations,
-                             result.iterations > 0);
+    const int done =
+        s.solve(kSafety * tolerance * speed, maxIterations - result.iterations, result.iterations > 0);
     if (done == 0) break;
     result.iterations += done;
-    measured = s.flux.subtractAndMeasure(boundary, level, s.solution, u, v, level.b,
-                                         [&](int j) { s.rememberRow(j); });
+    measured = s.flux.subtractAndMeasure(
+        boundary, level, s.solution, u, v, level.b, [&](int j) { s.finishRow(j); },
+        [&](int j) { s.rememberRow(j); });
+    s.incrementEmpty = false;
   }
+  if (s.incrementEmpty) std::fill(s.increment.begin(), s.increment.end(), 0.0f);
   forRows(s.pool, boundary.grid.cells(), 0, level.ny, [&](int j) { s.addToRow(s.increment, phi, 1, j); });
   return result;
 }
@@ -360,20 +397,23 @@ void PressureSolver::projectRoughly(const Boundary& boundary, Field& u, Field& v
   if (!(source.flux > 0) || !std::isfinite(source.flux)) return;
   Floats& increment = cycles > 0 ? s.solution : s.multigrid.finest().x;
   if (cycles > 0) {
-    s.solve(source.flux, 0, cycles);
+    s.solve(0, cycles);
   } else {
-    s.multigrid.cycle();
+    s.multigrid.cycle(false);
+    s.due = {};
     s.centre(increment);
   }
-  s.flux.subtractGradient(level, increment, u, v, [&](int j) {
-    if (phi) s.addToRow(increment, *phi, static_cast<float>(gain), j);
-  });
+  s.flux.subtractGradient(
+      level, increment, u, v, [&](int j) { s.finishRow(j); },
+      [&](int j) {
+        if (phi) s.addToRow(increment, *phi, static_cast<float>(gain), j);
+      });
 }
 
 std::size_t PressureSolver::bytes() const {
   const Impl& s = *impl_;
   return s.multigrid.bytes() + s.regions.bytes() + 3 * s.solution.capacity() * sizeof(float) +
-         2 * (s.rows.capacity() + s.advances.capacity() + s.overlaps.capacity()) * sizeof(double);
+         2 * (s.advances.capacity() + s.overlaps.capacity()) * sizeof(double);
 }
 
 }  // namespace smokebox

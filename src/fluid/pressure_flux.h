@@ -23,17 +23,17 @@ class PressureFlux {
   Largest measure(const Boundary& boundary, const multigrid::Level& links, const Field& u, const Field& v,
                   multigrid::Floats& b);
 
-  /// u -= grad phi on open faces. phi: on the finest level's grid, copies beyond the sides in place. also(j)
-  /// is called for each row.
-  template <class Also>
+  /// u -= grad phi on open faces. phi: on the finest level's grid, copies beyond the sides in place. first(j)
+  /// is called for each row before phi's is read (on one thread, from the lowest on), also(j) after.
+  template <class First, class Also>
   void subtractGradient(const multigrid::Level& links, const multigrid::Floats& phi, Field& u, Field& v,
-                        Also&& also);
+                        First&& first, Also&& also);
 
   /// Both in one pass, as far as rows go one after the other.
-  template <class Also>
+  template <class First, class Also>
   Largest subtractAndMeasure(const Boundary& boundary, const multigrid::Level& links,
                              const multigrid::Floats& phi, Field& u, Field& v, multigrid::Floats& b,
-                             Also&& also);
+                             First&& first, Also&& also);
 
  private:
   /// The lower and left faces of row j, and those of the last sides beside it.
@@ -47,26 +47,29 @@ class PressureFlux {
   std::vector<Largest> rows_;
 };
 
-template <class Also>
+template <class First, class Also>
 void PressureFlux::subtractGradient(const multigrid::Level& links, const multigrid::Floats& phi, Field& u,
-                                    Field& v, Also&& also) {
+                                    Field& v, First&& first, Also&& also) {
   forRows(pool_, static_cast<long>(links.nx) * links.ny, 0, links.ny, [&](int j) {
+    first(j);
     subtractFromRow(links, phi, u, v, j);
     also(j);
   });
 }
 
-template <class Also>
+template <class First, class Also>
 PressureFlux::Largest PressureFlux::subtractAndMeasure(const Boundary& boundary,
                                                        const multigrid::Level& links,
                                                        const multigrid::Floats& phi, Field& u, Field& v,
-                                                       multigrid::Floats& b, Also&& also) {
+                                                       multigrid::Floats& b, First&& first,
+                                                       Also&& also) {
   if (pool_.threads() > 1) {
-    subtractGradient(links, phi, u, v, also);
+    subtractGradient(links, phi, u, v, first, also);
     return measure(boundary, links, u, v, b);
   }
   for (int j = 0; j <= links.ny; ++j) {
     if (j < links.ny) {
+      first(j);
       subtractFromRow(links, phi, u, v, j);
       also(j);
     }
