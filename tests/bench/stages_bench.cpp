@@ -64,11 +64,13 @@ struct Step {
 // cycle, on a level: right-hand side read, solution written, residual summed up into the coarse right-hand
 // side (a quarter); both read again, the coarse correction read (a quarter), the solution written.
 // Arithmetic: a sweep of one colour works out both, 5 operations; the first from nothing 1; the residual 6,
-// its sums 0.75, the correction 1; two sweeps back 10; the product 2.
-constexpr Work kCycle{(1 + 1 + 0.25 + 2 + 0.25 + 1) * 4 / 3, (1 + 5 + 6 + 0.75 + 1 + 10 + 2) * 4 / 3};
-// Conjugate gradients: correction and direction in, direction out; direction, solution and residual in, the
-// latter two out.
-const Work kIteration = kCycle + Work{3, 2 + 6 + 2} + Work{5, 2 + 6 + 2 + 1};
+// its sums 0.75, the correction 1; three sweeps back 15.
+constexpr Work kCycle{(1 + 1 + 0.25 + 2 + 0.25 + 1) * 4 / 3, (1 + 10 + 6 + 0.75 + 1 + 15) * 4 / 3};
+// Conjugate gradients: two products with what the cycle leaves; correction, direction and residual in, the
+// latter two out, and every other time the solution in and out.
+const Work kIteration = kCycle + Work{5 + 0.5 * 2, (2 + 6 + 2) + (2 + 6 + 2 + 1 + 0.5 * 4)};
+// The only one of a solve: the solution is a multiple of what the cycle leaves.
+const Work kOnly = kCycle + Work{1, 2 + 6 + 2 + 1};
 constexpr Work kMeasure{3, 5};   // the velocity in, its divergence out
 constexpr Work kSubtract{7, 6};  // the increment in, velocity and pressure in and out
 // Fluxes of 24 operations along two axes, differences 12, impulse 4, for two components. Velocity now and at
@@ -81,9 +83,9 @@ std::map<std::string, Work> leastMoved(const Step& step) {
   // with the open shares, accelerations out. Buoyancy may go along: where there is smoke, its value in.
   stages["forces"] = Work{2 + 1, 4} + Work{1, 10} + Work{1 + 2 + 2, 18 + 6} + step.smokeShare * Work{1, 3};
   // The Courant number: velocity, pressure, accelerations and open shares in.
-  const double iterations = step.subSteps == 1 ? 2 : 1, between = step.subSteps - 1;
+  const double between = step.subSteps - 1;
   stages["advect"] = Work{7, 18} + step.subSteps * (kFirstStage + 2 * kLaterStage) +
-                     step.subSteps * (kMeasure + iterations * kIteration + kSubtract) +
+                     step.subSteps * (kMeasure + kOnly + kSubtract) +
                      between * (kMeasure + kCycle + kSubtract);
   // The last increment taken off again, the divergence before and after, and the increment kept.
   stages["project"] = kSubtract + 2 * kMeasure + step.iterations * kIteration + kSubtract + Work{2, 1};
@@ -93,12 +95,12 @@ std::map<std::string, Work> leastMoved(const Step& step) {
   return stages;
 }
 
-/// Iterations within the stage of a step, a bare cycle counting as the share of one that it is.
+/// Iterations within the stage of a step, what is less than one counting as the share of one that it is.
 double iterationsIn(const std::string& stage, const Step& step) {
   if (stage == "project") return step.iterations;
   if (stage != "advect") return 0;
-  const double bare = kCycle.flops / kIteration.flops;
-  return step.subSteps == 1 ? 2 : step.subSteps + bare * (step.subSteps - 1);
+  const double only = kOnly.flops / kIteration.flops, bare = kCycle.flops / kIteration.flops;
+  return only * step.subSteps + bare * std::max(step.subSteps - 1, 0.0);
 }
 
 /// The machine, in a second: bytes moved by a copy, operations on floats that do not wait for each other.
