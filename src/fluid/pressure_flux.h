@@ -61,8 +61,7 @@ template <class First, class Also>
 PressureFlux::Largest PressureFlux::subtractAndMeasure(const Boundary& boundary,
                                                        const multigrid::Level& links,
                                                        const multigrid::Floats& phi, Field& u, Field& v,
-                                                       multigrid::Floats& b, First&& first,
-                                                       Also&& also) {
+                                                       multigrid::Floats& b, First&& first, Also&& also) {
   if (pool_.threads() > 1) {
     subtractGradient(links, phi, u, v, first, also);
     return measure(boundary, links, u, v, b);
