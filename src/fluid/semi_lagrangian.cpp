@@ -16,6 +16,9 @@ constexpr int kBlock = 16;  // cells along a side of the blocks that are looked 
 // The 4 samples of a row that an interpolation reads, or their weights.
 typedef float Quad __attribute__((vector_size(16), aligned(4), may_alias));
 
+typedef float Pair __attribute__((vector_size(8), aligned(4), may_alias));
+
+inline Pair pairAt(const float* p) { return *reinterpret_cast<const Pair*>(p); }
 inline Quad quadAt(const float* p) { return *reinterpret_cast<const Quad*>(p); }
 
 /// Catmull-Rom: b (-a b/2), b (1 + a - 3/2 a^2) with b = 1 - a, and those with a and b exchanged, so that 1 -
@@ -104,14 +107,23 @@ class OpenPaths {
     places.a[k] = x.share;
     places.b[k] = y.share;
   }
-  /// One by one: to gather in vectors takes twice as long.
-  static void bilinear(const Field& f, const Places& places, int count, float* out) {
+  /// Samples are fetched one by one, two at a time (to gather in vectors takes twice as long), and worked on
+  /// together.
+  static void bilinear(const Field& f, const Places& places, int count, float* __restrict out) {
     const float* samples = f.row(0);
     const std::ptrdiff_t stride = f.stride();
+    alignas(64) Pair lower[kTile], upper[kTile];
     for (int k = 0; k < count; ++k) {
-      const float *p = samples + places.at[k], *q = p + stride;
+      const float* p = samples + places.at[k];
+      lower[k] = pairAt(p);
+      upper[k] = pairAt(p + stride);
+    }
+    const float *p = &lower[0][0], *q = &upper[0][0];
+#pragma omp simd
+    for (int k = 0; k < count; ++k) {
       const float a = places.a[k], b = places.b[k];
-      out[k] = (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * q[0] + a * q[1]);
+      out[k] =
+          (1 - b) * ((1 - a) * p[2 * k] + a * p[2 * k + 1]) + b * ((1 - a) * q[2 * k] + a * q[2 * k + 1]);
     }
   }
 
@@ -173,13 +185,43 @@ class OpenPaths {
   const float scale_;  // cells per m/s
 };
 
-/// Interpolates at the feet, where faces are open.
-void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, float* out) {
+/// limitedCubic() at the feet, where faces are open: along y one by one, the rest together.
+void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, float* __restrict out) {
   const float* samples = f.row(0);
   const std::ptrdiff_t stride = f.stride();
+  alignas(64) float wx[4][kTile], wy[4][kTile];
+  const auto weigh = [&](const float* share, float(&w)[4][kTile]) {
+#pragma omp simd
+    for (int k = 0; k < count; ++k) {
+      const float a = share[k], b = 1 - a;
+      w[0][k] = b * (0 + a * (-0.5f + a * 0.5f));
+      w[1][k] = b * (1 + a * (1 + a * -1.5f));
+      w[2][k] = a * (1 + b * (1 + b * -1.5f));
+      w[3][k] = a * (0 + b * (-0.5f + b * 0.5f));
+    }
+  };
+  weigh(feet.shareX, wx);
+  weigh(feet.shareY, wy);
+  alignas(64) Quad along[kTile], low[kTile], high[kTile];
   for (int k = 0; k < count; ++k) {
-    if (!(open[k] > 0)) continue;
-    out[k] = limitedCubic(samples + feet.at[k], stride, feet.shareX[k], feet.shareY[k]);
+    const float* p = samples + feet.at[k] - 1;
+    const Quad r0 = quadAt(p - stride), r1 = quadAt(p), r2 = quadAt(p + stride), r3 = quadAt(p + 2 * stride);
+    const Quad second = quadAt(feet.shareY[k] > 0 ? p + stride : p);
+    along[k] = (wy[1][k] * r1 + wy[2][k] * r2) + (wy[0][k] * r0 + wy[3][k] * r3);
+    low[k] = smaller(r1, second);
+    high[k] = larger(r1, second);
+  }
+  const float *q = &along[0][0], *least = &low[0][0], *most = &high[0][0];
+#pragma omp simd
+  for (int k = 0; k < count; ++k) {
+    const float sum =
+        (wx[1][k] * q[4 * k + 1] + wx[2][k] * q[4 * k + 2]) + (wx[0][k] * q[4 * k] + wx[3][k] * q[4 * k + 3]);
+    const bool between = feet.shareX[k] > 0;
+    const float least1 = least[4 * k + 1], least2 = between ? least[4 * k + 2] : least1;
+    const float most1 = most[4 * k + 1], most2 = between ? most[4 * k + 2] : most1;
+    const float lowest = least2 < least1 ? least2 : least1, highest = most1 < most2 ? most2 : most1;
+    const float raised = sum < lowest ? lowest : sum, value = highest < raised ? highest : raised;
+    out[k] = open[k] > 0 ? value : out[k];
   }
 }
 
