@@ -5,6 +5,7 @@
 
 #include "fluid/multigrid_kernels.h"
 #include "fluid/multigrid_parents.h"
+#include "fluid/multigrid_transfer.h"
 
 namespace smokebox {
 

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "fluid/multigrid_build.h"
-#include "fluid/multigrid_kernels.h"
+#include "fluid/multigrid_transfer.h"
 #include "fluid/multigrid_parents.h"
 
 namespace smokebox::multigrid {

@@ -1,6 +1,6 @@
-// Contacts that stay as they are for a whole step, solved four at a time: warm-started projected Gauss-Seidel
-// on impulses with Coulomb's friction (Catto 2005, Iterative Dynamics with Temporal Coherence), in colours:
-// no moving body is met twice within a block, so the order of the lanes does not matter.
+// Contacts that stay as they are for a whole step, solved eight at a time: warm-started projected
+// Gauss-Seidel on impulses with Coulomb's friction (Catto 2005, Iterative Dynamics with Temporal Coherence),
+// in colours: no moving body is met twice within a block, so the order of the lanes does not matter.
 //
 // A contact that is not closed yet may close within the sub-step but not go beyond (Mirtich's and Catto's
 // speculative contact): v_n >= -gap / h. What overlaps is moved apart on places alone, as the
