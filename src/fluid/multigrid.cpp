@@ -53,13 +53,13 @@ void sweepUp(Level& level, int s, int j) {
 }
 
 Multigrid::Products productsOfRow(const Level& level, int j) {
-  multigrid::Lanes slope = {}, curvature = {};
+  Lanes slope = {}, curvature = {};
   const std::uint8_t* kind = level.chunkRow(j);
   for (int c = 0; c < level.chunks; ++c) {
     if (kind[c] & multigrid::kEmpty) continue;
-    const std::ptrdiff_t at = level.at(c * multigrid::kLanes, j);
-    const multigrid::Lanes value = multigrid::load(level.x.data() + at);
-    slope += value * multigrid::load(level.b.data() + at);
+    const std::ptrdiff_t at = level.at(c * kLanes, j);
+    const Lanes value = load(level.x.data() + at);
+    slope += value * load(level.b.data() + at);
     curvature += value * applyChunk(level, kind[c], level.x.data(), at);
   }
   return {multigrid::sumOfLanes(slope), multigrid::sumOfLanes(curvature)};
@@ -107,8 +107,8 @@ void Multigrid::shape(const Boundary& boundary) {
             level.distanceY);
     const auto nominal = [&](const std::vector<double>& width, const std::vector<double>& distance,
                              std::vector<float>& size, std::vector<float>& near) {
-      size.assign(width.size() + 2 * multigrid::kLanes, 0);
-      near.assign(width.size() + 2 * multigrid::kLanes, 0);
+      size.assign(width.size() + 2 * kLanes, 0);
+      near.assign(width.size() + 2 * kLanes, 0);
       for (std::size_t k = 0; k < width.size(); ++k) size[k] = static_cast<float>(width[k] / unit);
       for (std::size_t k = 0; k < distance.size(); ++k) near[k] = static_cast<float>(unit / distance[k]);
     };
@@ -122,7 +122,7 @@ void Multigrid::shape(const Boundary& boundary) {
     n = Joining::joined(n);
     unit *= 2;
   }
-  zeroRow_.assign(levels_.front().residualStride + 2 * multigrid::kLanes, 0);
+  zeroRow_.assign(levels_.front().residualStride + 2 * kLanes, 0);
   rowProducts_.assign(ny, {});
 }
 

@@ -76,7 +76,7 @@ class Multigrid {
   std::vector<int> sealedBegin_;  // its unknowns, region by region
   std::vector<int> sealedAt_;
   std::vector<std::vector<int>> labels_;  // scratch of listSealed, by level
-  const float* zeroRow() const { return zeroRow_.data() + multigrid::kLanes; }
+  const float* zeroRow() const { return zeroRow_.data() + kLanes; }
   std::vector<float> zeroRow_;
   std::vector<Products> rowProducts_;
 };

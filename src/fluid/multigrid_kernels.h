@@ -7,21 +7,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/lanes.h"
 #include "fluid/multigrid_level.h"
 
-// Vectors wider than the machine's stay inside inlined functions. The warning comes at the end of a file: not
-// restored.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace smokebox::multigrid {
-
-typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
-typedef int LaneMask __attribute__((vector_size(64), aligned(4), may_alias));
-
-#define SMOKEBOX_INLINE inline __attribute__((always_inline))
-
-SMOKEBOX_INLINE Lanes load(const float* p) { return *reinterpret_cast<const Lanes*>(p); }
-SMOKEBOX_INLINE void store(float* p, const Lanes& v) { *reinterpret_cast<Lanes*>(p) = v; }
 
 SMOKEBOX_INLINE double sumOfLanes(const Lanes& v) {
   typedef float Half __attribute__((vector_size(32)));
@@ -36,11 +25,6 @@ SMOKEBOX_INLINE double sumOfLanes(const Lanes& v) {
   std::memcpy(&last, reinterpret_cast<const char*>(&pair) + sizeof(first), sizeof(last));
   const Four four = first + last;
   return (four[0] + four[2]) + (four[1] + four[3]);
-}
-
-SMOKEBOX_INLINE Lanes magnitude(const Lanes& v) {
-  const LaneMask bits = reinterpret_cast<const LaneMask&>(v) & 0x7fffffff;
-  return reinterpret_cast<const Lanes&>(bits);
 }
 
 /// The larger one of each lane, of magnitudes. Compared by their bits: a NaN is larger than any number, and

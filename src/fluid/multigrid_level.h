@@ -16,6 +16,8 @@
 #include <new>
 #include <vector>
 
+#include "base/lanes.h"
+
 namespace smokebox::multigrid {
 
 template <class T>
@@ -35,9 +37,7 @@ struct AlignedAllocator {
 
 using Floats = std::vector<float, AlignedAllocator<float>>;
 
-constexpr int kLanes = 16;  // cells in a chunk
-
-/// What a chunk of 16 cells needs. Bits.
+/// What a chunk of kLanes cells needs. Bits.
 enum Chunk : std::uint8_t {
   kGeneral = 0,
   kRegular = 1,  // all links of all 16 cells are exactly 1

@@ -14,12 +14,8 @@ namespace smokebox {
 
 using multigrid::Floats;
 using multigrid::kEmpty;
-using multigrid::kLanes;
 using multigrid::kRegular;
-using multigrid::Lanes;
 using multigrid::Level;
-using multigrid::load;
-using multigrid::store;
 
 namespace {
 
@@ -184,8 +180,8 @@ PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float b
       const std::ptrdiff_t i = level.at(c * kLanes, j);
       const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
       store(r + i, value);
-      residual = multigrid::larger(multigrid::magnitude(value), residual);
-      if (first) size = multigrid::larger(multigrid::magnitude(alpha * load(p + i)), size);
+      residual = multigrid::larger(magnitude(value), residual);
+      if (first) size = multigrid::larger(magnitude(alpha * load(p + i)), size);
     }
     advances[j] = {multigrid::largestLane(residual), multigrid::largestLane(size)};
   };

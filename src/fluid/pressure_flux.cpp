@@ -8,12 +8,7 @@
 namespace smokebox {
 
 using multigrid::kEmpty;
-using multigrid::kLanes;
 using multigrid::kRegular;
-using multigrid::LaneMask;
-using multigrid::Lanes;
-using multigrid::load;
-using multigrid::store;
 
 namespace {
 
@@ -143,9 +138,9 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
       below = load(ay + first) > zero ? below : zero;
     }
     store(out + first, net);
-    flux = multigrid::larger(multigrid::magnitude(net), flux);
-    speed = multigrid::larger(multigrid::magnitude(left), speed);
-    speed = multigrid::larger(multigrid::magnitude(below), speed);
+    flux = multigrid::larger(magnitude(net), flux);
+    speed = multigrid::larger(magnitude(left), speed);
+    speed = multigrid::larger(magnitude(below), speed);
   }
   double sideSpeed = 0;
   if (ax[nx] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), sideSpeed);

@@ -5,7 +5,6 @@
 
 namespace smokebox {
 
-using multigrid::kLanes;
 using multigrid::kRegular;
 using multigrid::Level;
 

@@ -154,13 +154,16 @@ void SmokeVolumes::findWindows(const Activity& active, int reach) {
     std::fill(windows_.begin(), windows_.end(), Window{0, nx});
     return;
   }
-  const int beyond = reach + 8, strips = 1 + (beyond + Activity::kStrip - 1) / Activity::kStrip;
+  constexpr int kColumns = 64;  // windows begin and end at multiples of these
+  const int beyond = reach + 8, margin = kColumns + (beyond + kColumns - 1) / kColumns * kColumns;
   for (int k = 0; k < count; ++k) {
     Window& w = smoky_[k];
     w = {};
     for (int j = k * kWindowRows; j < std::min(ny, (k + 1) * kWindowRows); ++j)
-      for (int s = 0; s < active.strips(); ++s)
-        if (active.at(s, j)) w.join({(s - strips) * Activity::kStrip, (s + 1 + strips) * Activity::kStrip});
+      for (int s = active.next(0, j); s < active.strips(); s = active.next(s + 1, j)) {
+        const int column = s * Activity::kStrip / kColumns * kColumns;
+        w.join({column - margin, column + kColumns + margin});
+      }
     if (w.begin >= w.end) continue;
     // Through a periodic side: all columns.
     if (cells_.periodicX && (w.begin < 0 || w.end > nx)) w = {0, nx};

@@ -13,7 +13,9 @@
 // smoke_merge.h.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "base/field.h"
@@ -54,12 +56,33 @@ struct ClusterRoot {
 /// Which parts of the rows hold any smoke at all: rows -4 .. ny + 3, strips of kStrip columns.
 class Activity {
  public:
-  static constexpr int kStrip = 64;
+  static constexpr int kStrip = 16;
   Activity() = default;
-  Activity(int nx, int ny) : strips_((nx + kStrip - 1) / kStrip), flags_(strips_ * (ny + 8), 0) {}
+  Activity(int nx, int ny)
+      : strips_((nx + kStrip - 1) / kStrip),
+        stride_(strips_ + kWord),
+        flags_(static_cast<std::size_t>(stride_) * (ny + 8), 0) {}
   int strips() const { return strips_; }
-  std::uint8_t& at(int strip, int j) { return flags_[(j + 4) * strips_ + strip]; }
-  std::uint8_t at(int strip, int j) const { return flags_[(j + 4) * strips_ + strip]; }
+  std::uint8_t& at(int strip, int j) { return flags_[place(strip, j)]; }
+  std::uint8_t at(int strip, int j) const { return flags_[place(strip, j)]; }
+  /// The first strip of a row from this one on that is marked, or strips().
+  int next(int strip, int j) const {
+    for (; strip < strips_; strip += kWord) {
+      std::uint64_t word;
+      std::memcpy(&word, flags_.data() + place(strip, j), kWord);
+      if (word) return strip + std::countr_zero(word) / 8;
+    }
+    return strips_;
+  }
+  /// Whether any is marked in strips [begin, end), 8 at most, of rows [j0, j1).
+  bool any(int begin, int end, int j0, int j1) const {
+    std::uint64_t marked = 0, word;
+    for (int j = j0; j < j1; ++j) {
+      std::memcpy(&word, flags_.data() + place(begin, j), kWord);
+      marked |= word;
+    }
+    return marked << 8 * (kWord - (end - begin)) != 0;
+  }
   void clear() { std::fill(flags_.begin(), flags_.end(), 0); }
   /// Marks what is marked in one of the same shape.
   void add(const Activity& other) {
@@ -67,11 +90,14 @@ class Activity {
   }
   void swap(Activity& other) noexcept {
     std::swap(strips_, other.strips_);
+    std::swap(stride_, other.stride_);
     flags_.swap(other.flags_);
   }
 
  private:
-  int strips_ = 0;
+  static constexpr int kWord = 8;  // bytes; as many zeros after each row
+  std::size_t place(int strip, int j) const { return static_cast<std::size_t>(j + 4) * stride_ + strip; }
+  int strips_ = 0, stride_ = 0;
   std::vector<std::uint8_t> flags_;
 };
 

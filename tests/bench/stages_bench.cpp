@@ -117,7 +117,6 @@ Machine measureMachine() {
     benchmark::DoNotOptimize(to.data());
     benchmark::ClobberMemory();
   }
-  using multigrid::Lanes;
   constexpr int kRounds = 1 << 20;
   const Lanes factor = Lanes{} + 0.5f, more = Lanes{} + 1.0f;
   for (int k = 0; k < 5; ++k) {
@@ -130,7 +129,7 @@ Machine measureMachine() {
                     }));
     benchmark::DoNotOptimize((a + b) + (c + d));
   }
-  return {2.0 * kBytes / copy, 4.0 * 2 * multigrid::kLanes * kRounds / sums};
+  return {2.0 * kBytes / copy, 4.0 * 2 * kLanes * kRounds / sums};
 }
 
 /// Milliseconds of one iteration on the scene's grid and solid, the median: solves of 2 and of 8 in turn, for
