@@ -195,9 +195,10 @@ SweepResult Sweeper::runX(const SweepJob& job, ThreadPool& pool) {
     if (!job.periodic && end == strips) in[n] = out[n] = 1;
     joinFluxes(chunksOf(n + 1), c + first, r + first, 1, donor, extra, in - 1, out - 1, in, out, job.quantum,
                flux);
-    const float* divisor = job.divisor ? job.divisor->row(j) + first : nullptr;
-    const std::int32_t most = update(n, m + first, divisor, v, c + first, c + first + 1, flux, flux + 1,
-                                     mOut + first, rOut + first);
+    const std::int32_t most = job.divisor ? updateWith(n, m + first, job.divisor->row(j) + first, flux,
+                                                       flux + 1, mOut + first, rOut + first)
+                                          : update(n, m + first, v, c + first, c + first + 1, flux, flux + 1,
+                                                   mOut + first, rOut + first);
     markHeld(n, mOut + first, &job.activeOut->at(begin, j));
     if (begin == 0) low_[j] = flux[0];
     if (end == strips) high_[j] = flux[n];
@@ -292,9 +293,10 @@ SweepResult Sweeper::runY(const SweepJob& job, ThreadPool& pool) {
       const int i = j - 1;  // the row of cells between the last two faces
       const float* m = job.mass->row(i) + first;
       float *mOut = job.massOut->row(i) + first, *rOut = job.valueOut->row(i) + first;
-      const float* divisor = job.divisor ? job.divisor->row(i) + first : nullptr;
-      const std::int32_t most = update(n, m, divisor, volumeAt(i), job.courant->row(i) + first, cLow,
-                                       ring(fluxRing, i), flux, mOut, rOut);
+      const std::int32_t most =
+          job.divisor ? updateWith(n, m, job.divisor->row(i) + first, ring(fluxRing, i), flux, mOut, rOut)
+                      : update(n, m, volumeAt(i), job.courant->row(i) + first, cLow, ring(fluxRing, i), flux,
+                               mOut, rOut);
       markHeld(n, mOut, &job.activeOut->at(begin, i));
       top = std::max(top, most);
     }
