@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "fluid/advection_kernel.h"
@@ -86,9 +87,9 @@ struct Advection::Impl {
     v.swap(v1);
   }
 
-  /// u += dt acceleration - grad phi, on open faces.
+  /// u += dt acceleration - grad phi, on open faces of rows [first, last).
   void addImpulse(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
-                  const Field* accelerationV, double dt) {
+                  const Field* accelerationV, double dt, int first, int last) const {
     const int nx = boundary.grid.nx, ny = boundary.grid.ny;
     const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
     const auto seconds = static_cast<float>(dt);
@@ -103,23 +104,21 @@ struct Advection::Impl {
         for (int i = begin; i < end; ++i) q[i] += open[i] > 0 ? behind[i] - ahead[i] : 0.0f;
       }
     };
-    pool.blocks(0, wrapY ? ny : ny + 1, kRowGrain, [&](int begin, int end) {
-      for (int j = begin; j < end; ++j) {
-        const float *rowU = accelerationU ? accelerationU->row(j) : nullptr,
-                    *rowV = accelerationV ? accelerationV->row(j) : nullptr;
-        const float *at = j < ny ? phi.row(j) : beyond.data(), *below = j > 0   ? phi.row(j - 1)
-                                                                        : wrapY ? phi.row(ny - 1)
-                                                                                : beyond.data();
-        push(v.row(j), boundary.openY.row(j), rowV, at, below, 0, nx);
-        if (j == ny) continue;
-        push(u.row(j), boundary.openX.row(j), rowU, at, at - 1, 1, nx);
-        auto edge = [&](int i, float ahead, float behind) {
-          if (boundary.openX(i, j) > 0) u(i, j) += (rowU ? seconds * rowU[i] : 0.0f) - (ahead - behind);
-        };
-        edge(0, at[0], wrapX ? at[nx - 1] : 0.0f);
-        if (!wrapX) edge(nx, 0.0f, at[nx - 1]);
-      }
-    });
+    for (int j = first; j < last; ++j) {
+      const float *rowU = accelerationU ? accelerationU->row(j) : nullptr,
+                  *rowV = accelerationV ? accelerationV->row(j) : nullptr;
+      const float *at = j < ny ? phi.row(j) : beyond.data(), *below = j > 0   ? phi.row(j - 1)
+                                                                      : wrapY ? phi.row(ny - 1)
+                                                                              : beyond.data();
+      push(v.row(j), boundary.openY.row(j), rowV, at, below, 0, nx);
+      if (j == ny) continue;
+      push(u.row(j), boundary.openX.row(j), rowU, at, at - 1, 1, nx);
+      auto edge = [&](int i, float ahead, float behind) {
+        if (boundary.openX(i, j) > 0) u(i, j) += (rowU ? seconds * rowU[i] : 0.0f) - (ahead - behind);
+      };
+      edge(0, at[0], wrapX ? at[nx - 1] : 0.0f);
+      if (!wrapX) edge(nx, 0.0f, at[nx - 1]);
+    }
   }
 
   /// Largest |u|+|v| over the cells, each component from the faster of the cell's two faces. If the fluid is
@@ -196,8 +195,10 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     return result;
   }
   m.extension.apply(boundary, u, v, true);
-  m.semiLagrangian.carry(boundary, u, v, dt, m.extension.anySolid(), m.u1, m.v1);
-  m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt);
+  const auto push = [&](int begin, int end) {
+    m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt, begin, end);
+  };
+  m.semiLagrangian.carry(boundary, u, v, dt, m.extension.anySolid(), m.u1, m.v1, std::ref(push));
   m.extension.apply(boundary, m.u1, m.v1);
   u.swap(m.u1);
   v.swap(m.v1);

@@ -31,8 +31,16 @@ void Fluid::boundaryChanged(const Boundary& boundary) {
 
 void Fluid::prepareUncovering(const Boundary& before) { advection_.extend(before, u_, v_); }
 
-void Fluid::beginForces(const Boundary& boundary) {
+void Fluid::beginForces(const Boundary& boundary, double confinement, double length) {
   if (viscosity_) viscosity_->bendAtWalls(boundary, u_, v_);
+  const bool confined = confinement != 0, fromNothing = confined && !parts_.viscous;
+  if (!fromNothing) startForces();
+  if (!confined) return;
+  advection_.extend(boundary, u_, v_);  // the curl beside walls and surfaces needs what lies behind them
+  confinement_->addForce(boundary, u_, v_, confinement, length, accelerationU_, accelerationV_, fromNothing);
+}
+
+void Fluid::startForces() {
   constexpr int kRows = 32;
   const int nx = u_.nx();
   pool_.blocks(0, u_.ny() + 1, kRows, [&](int begin, int end) {
@@ -46,11 +54,6 @@ void Fluid::beginForces(const Boundary& boundary) {
       }
     }
   });
-}
-
-void Fluid::addConfinement(const Boundary& boundary, double strength, double length) {
-  advection_.extend(boundary, u_, v_);  // the curl beside walls and surfaces needs what lies behind them
-  confinement_->addForce(boundary, u_, v_, strength, length, accelerationU_, accelerationV_);
 }
 
 void Fluid::advect(const Boundary& boundary, double dt) {

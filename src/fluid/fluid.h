@@ -32,13 +32,12 @@ class Fluid {
   /// Solids are about to move away from `before`: the faces that they uncover must hold the fluid's velocity.
   void prepareUncovering(const Boundary& before);
 
-  /// Sets the accelerations to what viscosity did in the last step (0 without it); the scene's own are then
-  /// added to accelerationU() and accelerationV(), m/s^2. With the last viscous acceleration and the last
-  /// pressure inside, the stages of a steady flow are in balance: without it each middle projection would
-  /// answer to the missing friction, and the velocity beside a wall, and with it the drag, would be off by a
-  /// share of the step.
-  void beginForces(const Boundary& boundary);
-  void addConfinement(const Boundary& boundary, double strength, double length);
+  /// Sets the accelerations to what viscosity did in the last step (0 without it) and what vorticity
+  /// confinement does (of this strength; 0: nothing); the scene's own are then added to accelerationU() and
+  /// accelerationV(), m/s^2. With the last viscous acceleration and the last pressure inside, the stages of a
+  /// steady flow are in balance: without it each middle projection would answer to the missing friction, and
+  /// the velocity beside a wall, and with it the drag, would be off by a share of the step.
+  void beginForces(const Boundary& boundary, double confinement, double length);
   void advect(const Boundary& boundary, double dt);
   /// Takes the last viscous acceleration out again and puts that of this step in, implicitly.
   void diffuse(const Boundary& boundary, double viscosity, double dt);
@@ -80,6 +79,8 @@ class Fluid {
   std::size_t bytes() const;
 
  private:
+  void startForces();
+
   Parts parts_;
   Field u_, v_, phi_;
   Field accelerationU_, accelerationV_;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kRowGrain = 8;
 constexpr int kTile = 32;   // faces of a row that are worked on together
+constexpr int kRun = 16;    // of these, those that are looked at for places side by side
 constexpr int kBlock = 16;  // cells along a side of the blocks that are looked through for solids
 
 // The 4 samples of a row that an interpolation reads, or their weights.
@@ -66,6 +67,14 @@ inline Sample sampleAt(float size, float from, float shift, float offset) {
   return {sample, offset - whole};
 }
 
+/// Whether places are side by side, as they are where the flow hardly changes: then their samples are, too.
+inline bool sideBySide(const int* at) {
+  int apart = 0;
+#pragma omp simd reduction(| : apart)
+  for (int k = 0; k < kRun; ++k) apart |= at[k] - at[0] - k;
+  return apart == 0;
+}
+
 /// The feet of the paths that lead to some faces of a row, as samples of the same component.
 struct Feet {
   alignas(64) int at[kTile];                       // the sample below and to the left
@@ -107,23 +116,38 @@ class OpenPaths {
     places.a[k] = x.share;
     places.b[k] = y.share;
   }
-  /// Samples are fetched one by one, two at a time (to gather in vectors takes twice as long), and worked on
-  /// together.
+  /// Where places are not side by side samples are fetched one by one, two at a time (to gather in vectors
+  /// takes twice as long), and worked on together.
   static void bilinear(const Field& f, const Places& places, int count, float* __restrict out) {
     const float* samples = f.row(0);
     const std::ptrdiff_t stride = f.stride();
-    alignas(64) Pair lower[kTile], upper[kTile];
-    for (int k = 0; k < count; ++k) {
-      const float* p = samples + places.at[k];
-      lower[k] = pairAt(p);
-      upper[k] = pairAt(p + stride);
-    }
-    const float *p = &lower[0][0], *q = &upper[0][0];
+    for (int begin = 0; begin < count; begin += kRun) {
+      const int* at = places.at + begin;
+      const float *shareX = places.a + begin, *shareY = places.b + begin;
+      float* to = out + begin;
+      if (count - begin >= kRun && sideBySide(at)) {
+        const float *p = samples + at[0], *q = p + stride;
 #pragma omp simd
-    for (int k = 0; k < count; ++k) {
-      const float a = places.a[k], b = places.b[k];
-      out[k] =
-          (1 - b) * ((1 - a) * p[2 * k] + a * p[2 * k + 1]) + b * ((1 - a) * q[2 * k] + a * q[2 * k + 1]);
+        for (int k = 0; k < kRun; ++k) {
+          const float a = shareX[k], b = shareY[k];
+          to[k] = (1 - b) * ((1 - a) * p[k] + a * p[k + 1]) + b * ((1 - a) * q[k] + a * q[k + 1]);
+        }
+        continue;
+      }
+      const int here = std::min(kRun, count - begin);
+      alignas(64) Pair lower[kRun], upper[kRun];
+      for (int k = 0; k < here; ++k) {
+        const float* p = samples + at[k];
+        lower[k] = pairAt(p);
+        upper[k] = pairAt(p + stride);
+      }
+      const float *p = &lower[0][0], *q = &upper[0][0];
+#pragma omp simd
+      for (int k = 0; k < here; ++k) {
+        const float a = shareX[k], b = shareY[k];
+        to[k] =
+            (1 - b) * ((1 - a) * p[2 * k] + a * p[2 * k + 1]) + b * ((1 - a) * q[2 * k] + a * q[2 * k + 1]);
+      }
     }
   }
 
@@ -185,12 +209,10 @@ class OpenPaths {
   const float scale_;  // cells per m/s
 };
 
-/// limitedCubic() at the feet, where faces are open: along y one by one, the rest together.
-void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, float* __restrict out) {
-  const float* samples = f.row(0);
-  const std::ptrdiff_t stride = f.stride();
-  alignas(64) float wx[4][kTile], wy[4][kTile];
-  const auto weigh = [&](const float* share, float(&w)[4][kTile]) {
+/// The weights of some places, kRun at most; see weights().
+struct Weights {
+  alignas(64) float w[4][kRun];
+  Weights(const float* share, int count) {
 #pragma omp simd
     for (int k = 0; k < count; ++k) {
       const float a = share[k], b = 1 - a;
@@ -199,29 +221,68 @@ void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, 
       w[2][k] = a * (1 + b * (1 + b * -1.5f));
       w[3][k] = a * (0 + b * (-0.5f + b * 0.5f));
     }
-  };
-  weigh(feet.shareX, wx);
-  weigh(feet.shareY, wy);
-  alignas(64) Quad along[kTile], low[kTile], high[kTile];
+  }
+};
+
+/// limitedCubic() at places side by side, where faces are open; p: the sample below and to the left of the
+/// first.
+void takeSideBySide(const float* __restrict p, std::ptrdiff_t stride, const float* shareX,
+                    const float* shareY, const float* open, float* __restrict out) {
+  const Weights x(shareX, kRun), y(shareY, kRun);
+#pragma omp simd
+  for (int k = 0; k < kRun; ++k) {
+    const float *r0 = p + k - stride, *r1 = p + k, *r2 = p + k + stride, *r3 = p + k + 2 * stride;
+    const float w0 = y.w[0][k], w1 = y.w[1][k], w2 = y.w[2][k], w3 = y.w[3][k];
+    const float before = (w1 * r1[-1] + w2 * r2[-1]) + (w0 * r0[-1] + w3 * r3[-1]);
+    const float left = (w1 * r1[0] + w2 * r2[0]) + (w0 * r0[0] + w3 * r3[0]);
+    const float right = (w1 * r1[1] + w2 * r2[1]) + (w0 * r0[1] + w3 * r3[1]);
+    const float after = (w1 * r1[2] + w2 * r2[2]) + (w0 * r0[2] + w3 * r3[2]);
+    const float sum = (x.w[1][k] * left + x.w[2][k] * right) + (x.w[0][k] * before + x.w[3][k] * after);
+    const bool between = shareX[k] > 0, above = shareY[k] > 0;
+    const float a1 = r1[0], a2 = above ? r2[0] : a1, b1 = r1[1], b2 = above ? r2[1] : b1;
+    const float least1 = a1 < a2 ? a1 : a2, most1 = a1 > a2 ? a1 : a2;
+    const float least2 = between ? (b1 < b2 ? b1 : b2) : least1,
+                most2 = between ? (b1 > b2 ? b1 : b2) : most1;
+    const float lowest = least2 < least1 ? least2 : least1, highest = most1 < most2 ? most2 : most1;
+    const float raised = sum < lowest ? lowest : sum, value = highest < raised ? highest : raised;
+    out[k] = open[k] > 0 ? value : out[k];
+  }
+}
+
+/// The same at `count` places anywhere: along y one by one, the rest together.
+void takeApart(const float* samples, std::ptrdiff_t stride, const int* at, const float* shareX,
+               const float* shareY, const float* open, int count, float* __restrict out) {
+  const Weights x(shareX, count), y(shareY, count);
+  alignas(64) Quad along[kRun], low[kRun], high[kRun];
   for (int k = 0; k < count; ++k) {
-    const float* p = samples + feet.at[k] - 1;
+    const float* p = samples + at[k] - 1;
     const Quad r0 = quadAt(p - stride), r1 = quadAt(p), r2 = quadAt(p + stride), r3 = quadAt(p + 2 * stride);
-    const Quad second = quadAt(feet.shareY[k] > 0 ? p + stride : p);
-    along[k] = (wy[1][k] * r1 + wy[2][k] * r2) + (wy[0][k] * r0 + wy[3][k] * r3);
+    const Quad second = quadAt(shareY[k] > 0 ? p + stride : p);
+    along[k] = (y.w[1][k] * r1 + y.w[2][k] * r2) + (y.w[0][k] * r0 + y.w[3][k] * r3);
     low[k] = smaller(r1, second);
     high[k] = larger(r1, second);
   }
   const float *q = &along[0][0], *least = &low[0][0], *most = &high[0][0];
 #pragma omp simd
   for (int k = 0; k < count; ++k) {
-    const float sum =
-        (wx[1][k] * q[4 * k + 1] + wx[2][k] * q[4 * k + 2]) + (wx[0][k] * q[4 * k] + wx[3][k] * q[4 * k + 3]);
-    const bool between = feet.shareX[k] > 0;
+    const float sum = (x.w[1][k] * q[4 * k + 1] + x.w[2][k] * q[4 * k + 2]) +
+                      (x.w[0][k] * q[4 * k] + x.w[3][k] * q[4 * k + 3]);
+    const bool between = shareX[k] > 0;
     const float least1 = least[4 * k + 1], least2 = between ? least[4 * k + 2] : least1;
     const float most1 = most[4 * k + 1], most2 = between ? most[4 * k + 2] : most1;
     const float lowest = least2 < least1 ? least2 : least1, highest = most1 < most2 ? most2 : most1;
     const float raised = sum < lowest ? lowest : sum, value = highest < raised ? highest : raised;
     out[k] = open[k] > 0 ? value : out[k];
+  }
+}
+
+void takeAtFeet(const Field& f, const Feet& feet, const float* open, int count, float* out) {
+  for (int k = 0; k < count; k += kRun) {
+    if (count - k >= kRun && sideBySide(feet.at + k))
+      takeSideBySide(f.row(0) + feet.at[k], f.stride(), feet.shareX + k, feet.shareY + k, open + k, out + k);
+    else
+      takeApart(f.row(0), f.stride(), feet.at + k, feet.shareX + k, feet.shareY + k, open + k,
+                std::min(kRun, count - k), out + k);
   }
 }
 
@@ -268,7 +329,7 @@ bool SemiLagrangian::anyShut(int i0, int i1, int j0, int j1) const {
 }
 
 void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field& v, double dt, bool anySolid,
-                           Field& outU, Field& outV) {
+                           Field& outU, Field& outV, const std::function<void(int begin, int end)>& after) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const int columns = boundary.periodicX() ? nx : nx + 1, rows = boundary.periodicY() ? ny : ny + 1;
   if (anySolid && shutBlocks_.empty()) findShutBlocks(boundary);
@@ -315,6 +376,7 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
           }
       }
     }
+    after(begin, end);
   });
 }
 

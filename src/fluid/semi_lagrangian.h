@@ -3,6 +3,7 @@
 // grows). A foot beyond a closed or open side is put on that side; where a solid is within reach, a path is
 // followed from cell to cell and ends at the last fluid on its way.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "base/threads.h"
@@ -18,8 +19,9 @@ class SemiLagrangian {
   void rebuild() { shutBlocks_.clear(); }
 
   /// u, v must have been extended. Writes all open faces of outU and outV (and those repeated by a period).
+  /// after(begin, end): what is to be done with these rows of both while they are in the cache.
   void carry(const Boundary& boundary, const Field& u, const Field& v, double dt, bool anySolid, Field& outU,
-             Field& outV);
+             Field& outV, const std::function<void(int begin, int end)>& after);
 
   std::size_t bytes() const { return shutBlocks_.size() * sizeof(int); }
 

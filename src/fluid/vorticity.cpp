@@ -99,7 +99,7 @@ void Confinement::forceAtNodes(const Boundary& boundary, int j, int first, int c
 }
 
 void Confinement::addForce(const Boundary& boundary, const Field& u, const Field& v, double strength,
-                           double length, Field& accelerationU, Field& accelerationV) {
+                           double length, Field& accelerationU, Field& accelerationV, bool fromNothing) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   vorticityAtNodes(boundary, u, v, pool_, omega_);
 
@@ -115,7 +115,12 @@ void Confinement::addForce(const Boundary& boundary, const Field& u, const Field
 
   perTwoMetres_ = static_cast<float>(0.5 / boundary.grid.h);
   const double steepest = steepestSquare();
-  if (!(steepest > 0)) return;
+  if (!(steepest > 0)) {
+    for (int j = 0; j <= ny && fromNothing; ++j)
+      for (Field* acceleration : {&accelerationU, &accelerationV})
+        std::fill_n(acceleration->row(j), nx + 1, 0.0f);
+    return;
+  }
   const float fadeSquare = std::max(static_cast<float>(steepest) * (kFade * kFade), 1e-37f);
   const auto scale = static_cast<float>(strength * length);
   // Forces at the nodes of two rows at a time, and only of some columns, so that they stay in the cache.
@@ -130,16 +135,19 @@ void Confinement::addForce(const Boundary& boundary, const Field& u, const Field
       };
       find(begin);
       for (int j = begin; j < end; ++j) {
+        float *au = accelerationU.row(j) + first, *av = accelerationV.row(j) + first;
+        if (fromNothing) {
+          std::fill_n(au, faces, 0.0f);
+          std::fill_n(av, faces, 0.0f);
+        }
         if (j < ny) {
           find(j + 1);
           const float *fx = lines[j & 1][0], *fxAbove = lines[(j + 1) & 1][0];
           const float* openX = boundary.openX.row(j) + first;
-          float* au = accelerationU.row(j) + first;
 #pragma omp simd
           for (int i = 0; i < faces; ++i) au[i] += openX[i] > 0 ? 0.5f * (fx[i] + fxAbove[i]) : 0.0f;
         }
         const float *fy = lines[j & 1][1], *openY = boundary.openY.row(j) + first;
-        float* av = accelerationV.row(j) + first;
 #pragma omp simd
         for (int i = 0; i < across; ++i) av[i] += openY[i] > 0 ? 0.5f * (fy[i] + fy[i + 1]) : 0.0f;
       }

@@ -19,9 +19,9 @@ void vorticityAtNodes(const Boundary& boundary, const Field& u, const Field& v, 
 class Confinement {
  public:
   Confinement(const Boundary& boundary, ThreadPool& pool);
-  /// u, v: extended.
+  /// u, v: extended. `fromNothing`: what the accelerations hold does not count.
   void addForce(const Boundary& boundary, const Field& u, const Field& v, double strength, double length,
-                Field& accelerationU, Field& accelerationV);
+                Field& accelerationU, Field& accelerationV, bool fromNothing = false);
   std::size_t bytes() const;
 
  private:

@@ -60,18 +60,32 @@ void SmokeStage::addBuoyancy(const Boundary& boundary, double buoyancy, Vec2 gra
         // On the rim the cell beyond is the other side's, or the same as the one inside.
         const float* here = value.row(j < ny ? j : wrapY ? 0 : ny - 1);
         const float* below = value.row(j > 0 ? j - 1 : wrapY ? ny - 1 : 0);
+        // Most of the rows of a scene hold no smoke, and most columns of the others.
+        constexpr int kBlock = 64;
+        const auto holds = [&](int first) {
+          std::int32_t any = 0;
+          const int last = std::min(nx, first + kBlock);
+#pragma omp simd reduction(| : any)
+          for (int i = first; i < last; ++i) any |= (below[i] != 0) | (here[i] != 0);
+          return any != 0;
+        };
+        int left = 0, right = nx;
+        while (left < nx && !holds(left)) left += kBlock;
+        if (left >= nx) continue;
+        while (!holds((right - 1) / kBlock * kBlock)) right = (right - 1) / kBlock * kBlock;
         const float *openX = boundary.openX.row(j), *openY = boundary.openY.row(j);
         if (halfX != 0 && j < ny) {
           float* au = accelerationU.row(j);
 #pragma omp simd
-          for (int i = 1; i < nx; ++i) au[i] += openX[i] > 0 ? halfX * (here[i - 1] + here[i]) : 0.f;
+          for (int i = std::max(1, left); i < std::min(nx, right + 1); ++i)
+            au[i] += openX[i] > 0 ? halfX * (here[i - 1] + here[i]) : 0.f;
           if (openX[0] > 0) au[0] += halfX * (here[wrapX ? nx - 1 : 0] + here[0]);
           if (openX[nx] > 0) au[nx] += halfX * (here[nx - 1] + here[wrapX ? 0 : nx - 1]);
         }
         if (halfY != 0) {
           float* av = accelerationV.row(j);
 #pragma omp simd
-          for (int i = 0; i < nx; ++i) av[i] += openY[i] > 0 ? halfY * (below[i] + here[i]) : 0.f;
+          for (int i = left; i < right; ++i) av[i] += openY[i] > 0 ? halfY * (below[i] + here[i]) : 0.f;
         }
       }
     }

@@ -248,9 +248,7 @@ void World::coverGrid(bool shapesMoved) {
 
 void World::addForces() {
   const Grid& grid = boundary_.grid;
-  fluid_->beginForces(boundary_);
-  if (spec_.fluid.vorticity != 0)
-    fluid_->addConfinement(boundary_, spec_.fluid.vorticity, std::min(grid.width(), grid.height()) / 256);
+  fluid_->beginForces(boundary_, spec_.fluid.vorticity, std::min(grid.width(), grid.height()) / 256);
   if (smoke_ && spec_.smoke.buoyancy != 0)
     smoke_->addBuoyancy(boundary_, spec_.smoke.buoyancy, spec_.gravity, fluid_->accelerationU(),
                         fluid_->accelerationV());
