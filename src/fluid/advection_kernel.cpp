@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lanes.h"
+
 namespace smokebox {
 
 namespace {
@@ -62,6 +64,13 @@ inline void finishLine(const float* base, const float* impulse, const float* x, 
   }
 }
 
+/// Asks for the columns from x0 on of a row that comes next.
+inline void expectRow(const Field* field, int j, int x0, int count) {
+  if (!field) return;
+  const float* row = field->row(j) + x0;
+  for (int i = 0; i < count; i += kLanes) expect(row + i);
+}
+
 struct Lines {
   alignas(64) float x[kLine], impulse[kLine], y[4][kLine];
 };
@@ -82,6 +91,10 @@ void advanceRowsOfU(const AdvectionStage& s, int begin, int end) {
     };
     for (int k = 0; k < 3; ++k) nodeLine(begin - 1 + k, y[k]);
     for (int j = begin; j < end; ++j) {
+      expectRow(s.u, j + 5, x0, count);
+      expectRow(s.v, j + 3, x0, count);
+      for (const Field* field : {s.baseU, s.phi, s.accelerationU, static_cast<const Field*>(s.outU)})
+        expectRow(field, j + 1, x0, count);
       nodeLine(j + 2, y[3]);
       // x-fluxes at the centres i - 1 of faces i = -1 .. : x[i] is left of face i.
       float* x = lines.x + kLead;
@@ -114,6 +127,10 @@ void advanceRowsOfV(const AdvectionStage& s, int begin, int end) {
     };
     for (int k = 0; k < 3; ++k) centreLine(begin - 2 + k, y[k]);
     for (int j = begin; j < end; ++j) {
+      expectRow(s.v, j + 5, x0, count);
+      expectRow(s.u, j + 2, x0, count);
+      for (const Field* field : {s.baseV, s.phi, s.accelerationV, static_cast<const Field*>(s.outV)})
+        expectRow(field, j + 1, x0, count);
       centreLine(j + 1, y[3]);
       // x-fluxes at the nodes i, left of face i, between v(i - 1) and v(i).
       float* x = lines.x + kLead;

@@ -311,11 +311,17 @@ inline void startRow(Level& level, int j) {
   for (int r = level.runBegin[j]; r < level.runBegin[j + 1]; ++r) {
     const Level::Run& run = level.runs[r];
     if (run.regular) {
-      for (int i = run.begin; i < run.end; i += kLanes)
+      for (int i = run.begin; i < run.end; i += kLanes) {
+        expect(b + i + level.stride);
+        expect(x + i + level.stride);
         store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * 0.25f : zero);
+      }
     } else {
-      for (int i = run.begin; i < run.end; i += kLanes)
+      for (int i = run.begin; i < run.end; i += kLanes) {
+        expect(b + i + level.stride);
+        expect(x + i + level.stride);
         store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * load(id + i) : zero);
+      }
     }
   }
   middlePair<false>(level, j, 0).solve(x);

@@ -74,6 +74,8 @@ inline void prolongRow(Level& fine, const Level& coarse, int j) {
   const Joining join = fine.joinX;
   for (int c = 0, i = 0; c < fine.chunks; ++c, i += kLanes) {
     if (kind[c] & kEmpty) continue;
+    expect(x + i + fine.stride);
+    expect(fine.row(fine.b, j) + i + fine.stride);
     Lanes value = __builtin_shuffle(load(correction + i / 2), place >> 1);
     if (i + kLanes > join.from) {
       const Lanes beyond =

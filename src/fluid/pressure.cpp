@@ -162,6 +162,9 @@ PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float b
     float *p = level.row(direction, j), *x = level.row(solution, j);
     const float* z = level.row(level.x, j);
     for (int i = 0; i < width; i += kLanes) {
+      expect(p + i + level.stride);
+      expect(z + i + level.stride);
+      if (before.any) expect(x + i + level.stride);
       const Lanes last = load(p + i), next = load(z + i) + beta * last;
       store(p + i, next);
       if (!before.any) continue;
@@ -178,6 +181,7 @@ PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float b
     for (int c = 0; c < level.chunks; ++c) {
       if (kind[c] & kEmpty) continue;
       const std::ptrdiff_t i = level.at(c * kLanes, j);
+      expect(r + i + level.stride);
       const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
       store(r + i, value);
       residual = multigrid::larger(magnitude(value), residual);
