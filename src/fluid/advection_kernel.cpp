@@ -64,9 +64,10 @@ inline void finishLine(const float* base, const float* impulse, const float* x, 
   }
 }
 
-/// Asks for the columns from x0 on of a row that comes next.
+/// Asks for the columns from x0 on of a row that comes next, of fields larger than a cache.
 inline void expectRow(const Field* field, int j, int x0, int count) {
-  if (!field) return;
+  constexpr long kLarge = 1 << 17;
+  if (!field || static_cast<long>(field->nx()) * field->ny() < kLarge) return;
   const float* row = field->row(j) + x0;
   for (int i = 0; i < count; i += kLanes) expect(row + i);
 }

@@ -307,19 +307,18 @@ inline void startRow(Level& level, int j) {
   float* x = level.row(level.x, j);
   const float* b = level.row(level.b, j);
   const float* id = level.row(level.id, j);
+  const bool large = level.large();
   const Lanes zero = {};
   for (int r = level.runBegin[j]; r < level.runBegin[j + 1]; ++r) {
     const Level::Run& run = level.runs[r];
     if (run.regular) {
       for (int i = run.begin; i < run.end; i += kLanes) {
-        expect(b + i + level.stride);
-        expect(x + i + level.stride);
+        if (large) expect(b + i + level.stride), expect(x + i + level.stride);
         store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * 0.25f : zero);
       }
     } else {
       for (int i = run.begin; i < run.end; i += kLanes) {
-        expect(b + i + level.stride);
-        expect(x + i + level.stride);
+        if (large) expect(b + i + level.stride), expect(x + i + level.stride);
         store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * load(id + i) : zero);
       }
     }

@@ -180,6 +180,9 @@ struct Level {
   const std::uint8_t* chunkRow(int j) const { return chunk.data() + static_cast<std::size_t>(j) * chunks; }
   std::uint8_t* chunkRow(int j) { return chunk.data() + static_cast<std::size_t>(j) * chunks; }
 
+  /// Larger than a cache: rows are asked for ahead.
+  bool large() const { return static_cast<long>(nx) * ny > (1 << 18); }
+
   /// Sets the copies beyond the left and right side: the neighbour across a periodic side, else 0.
   void wrapRow(float* values) const {
     values[-1] = periodicX ? values[nx - 1] : 0.0f;

@@ -63,7 +63,9 @@ inline void restrictRow(Level& fine, Level& coarse, int J, const float* zeroRow)
 /// Adds the coarse correction to row j.
 inline void prolongRow(Level& fine, const Level& coarse, int j) {
   float* x = fine.row(fine.x, j);
+  const float* b = fine.row(fine.b, j);
   const float* correction = coarse.row(coarse.x, fine.joinY.coarse(j));
+  const bool large = fine.large();
   const int first = fine.prolongBegin[j], last = fine.prolongBegin[j + 1];
   for (int s = first; s < last; ++s) {
     Level::Prolong& p = fine.prolong[s];
@@ -74,8 +76,7 @@ inline void prolongRow(Level& fine, const Level& coarse, int j) {
   const Joining join = fine.joinX;
   for (int c = 0, i = 0; c < fine.chunks; ++c, i += kLanes) {
     if (kind[c] & kEmpty) continue;
-    expect(x + i + fine.stride);
-    expect(fine.row(fine.b, j) + i + fine.stride);
+    if (large) expect(x + i + fine.stride), expect(b + i + fine.stride);
     Lanes value = __builtin_shuffle(load(correction + i / 2), place >> 1);
     if (i + kLanes > join.from) {
       const Lanes beyond =

@@ -154,7 +154,7 @@ PressureSolver::Impl::Source PressureSolver::Impl::source(const Boundary& bounda
 PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float beta, bool first) {
   Level& level = multigrid.finest();
   const int ny = level.ny, width = level.chunks * kLanes;
-  const bool alone = beta == 0 && !due.any;
+  const bool alone = beta == 0 && !due.any, large = level.large();
   if (alone) direction.swap(level.x);
   const Due before = due;
   due = before.any ? Due{} : Due{true, first, alpha, 0};
@@ -162,9 +162,8 @@ PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float b
     float *p = level.row(direction, j), *x = level.row(solution, j);
     const float* z = level.row(level.x, j);
     for (int i = 0; i < width; i += kLanes) {
-      expect(p + i + level.stride);
-      expect(z + i + level.stride);
-      if (before.any) expect(x + i + level.stride);
+      if (large) expect(p + i + level.stride), expect(z + i + level.stride);
+      if (large && before.any) expect(x + i + level.stride);
       const Lanes last = load(p + i), next = load(z + i) + beta * last;
       store(p + i, next);
       if (!before.any) continue;
@@ -181,7 +180,7 @@ PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float b
     for (int c = 0; c < level.chunks; ++c) {
       if (kind[c] & kEmpty) continue;
       const std::ptrdiff_t i = level.at(c * kLanes, j);
-      expect(r + i + level.stride);
+      if (large) expect(r + i + level.stride);
       const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
       store(r + i, value);
       residual = multigrid::larger(magnitude(value), residual);
