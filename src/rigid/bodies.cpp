@@ -11,7 +11,8 @@ Extent extentOf(const BodyShape& shape) {
     extent.half = shape.tree.nodes()[0].half;
   }
   const ConvexPiece& first = shape.pieces[0];
-  if (shape.pieces.size() == 1 && first.points.size() == 1) {
+  if (shape.pieces.size() == 1) extent.only = &first;
+  if (extent.only && first.points.size() == 1) {
     extent.centre = first.points[0];
     extent.radius = first.radius;
     if (first.points[0] == Vec2{0, 0}) extent.turningReach = 0;

@@ -44,6 +44,7 @@ struct Extent {
   double turningReach = 0;  // how far from the centre of mass a turn moves anything: 0 for a disk
   double thinnest = 0;      // smallest width of a part
   double radius = 0;        // of the disk that it is; 0: another shape
+  const ConvexPiece* only = nullptr;  // piece, if there is but one
 };
 Extent extentOf(const BodyShape& shape);
 

@@ -27,6 +27,17 @@ void finishPiece(ConvexPiece& piece) {
     const double size = length(along);
     piece.normals[k] = size > 0 ? Vec2{along.y / size, -along.x / size} : Vec2{};
   }
+  constexpr std::size_t kFour = 4;
+  piece.fours.assign((edges + kFour - 1) / kFour,
+                     {Lanes{} + piece.points[0].x, Lanes{} + piece.points[0].y, Lanes{}, Lanes{}, Lanes{} + 1e300});
+  for (std::size_t k = 0; k < edges; ++k) {
+    ConvexPiece::Four& four = piece.fours[k / kFour];
+    four.cornerX[k % kFour] = piece.points[k].x;
+    four.cornerY[k % kFour] = piece.points[k].y;
+    four.normalX[k % kFour] = piece.normals[k].x;
+    four.normalY[k % kFour] = piece.normals[k].y;
+    four.out[k % kFour] = dot(piece.normals[k], piece.points[k]);
+  }
   const MassProperties mass = n > 2 ? massProperties({piece.points}) : MassProperties{};
   piece.centre = mass.area > 0 ? mass.centre : mean;
   piece.reach = 0;

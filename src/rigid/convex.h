@@ -7,6 +7,7 @@
 
 #include "base/maths.h"
 #include "geometry/vec2.h"
+#include "rigid/lanes.h"
 
 namespace smokebox {
 
@@ -45,6 +46,12 @@ struct ConvexPiece {
   Vec2 centre;
   double reach = 0;   // largest distance of the (rounded) piece from `centre`
   double within = 0;  // the disk of this radius about `centre` lies within the core
+  /// The same four at a time: corners, and the lines of the edges that begin there, `out` from (0, 0) along
+  /// the normal. Lanes that are left over have corner 0 and a line at which nothing arrives.
+  struct Four {
+    Lanes cornerX, cornerY, normalX, normalY, out;
+  };
+  std::vector<Four> fours;
 
   bool whole = true;    // no edge is inner
   bool buried = false;  // every edge is inner

@@ -6,25 +6,37 @@ namespace smokebox::convex {
 
 namespace {
 
-/// Every edge against every corner.
-Axis directSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP, double limit) {
-  const int np = static_cast<int>(p.normals.size()), nq = static_cast<int>(q.points.size());
-  const Vec2* corners = q.points.data();
-  Axis best;
-  for (int k = 0; k < np; ++k) {
-    const Vec2 normal = p.normals[k], inward = -inverseRotate(qInP.turn, normal);
-    int at = 0;
-    double most = dot(inward, corners[0]);
-    for (int j = 1; j < nq; ++j) {
-      const double along = dot(inward, corners[j]);
-      at = along > most ? j : at;
-      most = along > most ? along : most;
+constexpr int kFew = 16;  // corners
+
+/// Every edge against every corner, four edges at a time.
+Axis directSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP) {
+  const int corners = static_cast<int>(q.points.size());
+  const Turn turn = qInP.turn;
+  double x[kFew], y[kFew];
+  for (std::size_t k = 0; k < q.fours.size(); ++k) {
+    const ConvexPiece::Four& four = q.fours[k];
+    store(x + 4 * k, qInP.position.x + (turn.c * four.cornerX - turn.s * four.cornerY));
+    store(y + 4 * k, qInP.position.y + (turn.s * four.cornerX + turn.c * four.cornerY));
+  }
+  Axis best{-1e300, 0, 0};
+  for (std::size_t k = 0; k < p.fours.size(); ++k) {
+    const ConvexPiece::Four& four = p.fours[k];
+    Lanes nearest = four.normalX * x[0] + four.normalY * y[0];
+    for (int j = 1; j < corners; ++j) {
+      const Lanes along = four.normalX * x[j] + four.normalY * y[j];
+      nearest = along < nearest ? along : nearest;
     }
-    const double separation = dot(normal, qInP.position - p.points[k]) - most;
-    if (separation > best.separation) {
-      best = {separation, k, at};
-      if (separation > limit) return best;
-    }
+    const Lanes separation = nearest - four.out;
+    for (int l = 0; l < 4; ++l)
+      if (separation[l] > best.separation) best = {separation[l], static_cast<int>(4 * k) + l, 0};
+  }
+  const ConvexPiece::Four& four = p.fours[best.edge / 4];
+  const double nx = four.normalX[best.edge % 4], ny = four.normalY[best.edge % 4];
+  double nearest = nx * x[0] + ny * y[0];
+  for (int j = 1; j < corners; ++j) {
+    const double along = nx * x[j] + ny * y[j];
+    best.support = along < nearest ? j : best.support;
+    nearest = along < nearest ? along : nearest;
   }
   return best;
 }
@@ -32,7 +44,7 @@ Axis directSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& q
 }  // namespace
 
 Axis largestSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP, double limit) {
-  if (p.points.size() * q.points.size() <= 40) return directSeparation(p, q, qInP, limit);
+  if (p.points.size() <= kFew && q.points.size() <= kFew) return directSeparation(p, q, qInP);
   const int np = static_cast<int>(p.normals.size());
   // The edge that faces the other's centre most is tried first. Any other cannot be better than its line is
   // from the disk within the other piece, and mostly that tells that it is worse.

@@ -67,7 +67,8 @@ struct Axis {
   int edge = -1, support = -1;
 };
 
-/// The edge of `p` whose line is farthest from `q`; stops at the first that is farther than `limit`.
+/// The edge of `p` whose line is farthest from `q`; where there are many, the first that is farther than
+/// `limit` will do.
 Axis largestSeparation(const ConvexPiece& p, const ConvexPiece& q, const Frame& qInP, double limit);
 
 /// Of the two edges at corner `k` the one that faces `direction` more.

@@ -57,59 +57,90 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   calm_.clear();
   lively_.clear();
   pairs_.clear();
+  due_.clear();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     BodyPair& pair = pairs[k];
-    const int a = pair.key.a, b = pair.key.b;
-    calmFirst_[k] = static_cast<int>(calm_.size());
-    const double thin = thinner(bodies, a, b);
-    const double way = relativeSpeed(bodies, a, b) * dt;
-    const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
-    const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
-    const bool pushed =
-        (!bodies.moves(a) && isMoving(bodies, a)) || (!bodies.moves(b) && isMoving(bodies, b));
-    if ((pushed && way > kReuse * thin) ||
-        way > (bounces ? std::clamp(slow, kCalmBouncing * thin, kCalm * thin) : kCalm * thin) ||
-        (way > kCalmTurning * thin && turn > kCalmTurn)) {
+    if (movesFast(bodies, pair.key, slow, dt)) {
       livelyPair_[k] = 1;
       makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
-      continue;
+    } else if (!mayKeep(bodies, pair, broad.shiftOf(pair.key), dt)) {
+      due_.push_back(static_cast<int>(k));
     }
-    const double margin = way + expected_[a].room + expected_[b].room;
-    const Vec2 shift = broad.shiftOf(pair.key), between = bodies.position[b] + shift - bodies.position[a];
-    const double turnedA = std::abs(bodies.angleRad[a] - pair.angleA),
-                 turnedB = std::abs(bodies.angleRad[b] - pair.angleB);
-    const double since = length(between - pair.between) + turnedA * bodies.extent[a].turningReach +
-                         turnedB * bodies.extent[b].turningReach;
-    auto follows = [&] {
-      const auto begin = memory_.begin() + pair.first;
-      return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
-    };
-    const bool same = (since <= kReuse * thin && std::max(turnedA, turnedB) <= kReuseTurn) ||
-                      (since <= kReuseFollowing * thin && follows());
-    if ((pair.apart || same) && margin + since <= pair.margin) {
+  }
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    BodyPair& pair = pairs[k];
+    calmFirst_[k] = static_cast<int>(calm_.size());
+    if (next < due_.size() && due_[next] == static_cast<int>(k)) {
+      askAhead(next, [&](int due) { return pairs[due].key; }, bodies);
+      ++next;
+      const Vec2 shift = broad.shiftOf(pair.key);
+      double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
+      if (clear <= pair.margin)
+        clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, memory_.data() + pair.first,
+                             pair.count, calm_, {});
+      pair.apart = clear >= pair.margin;
+      pair.margin = std::max(pair.margin, clear);
+    } else if (!livelyPair_[k]) {
       calm_.insert(calm_.end(), memory_.begin() + pair.first, memory_.begin() + pair.first + pair.count);
       for (auto c = calm_.end() - pair.count; c != calm_.end(); ++c) {
         setMasses(bodies, *c);
-        c->friction = std::sqrt(bodies.surface[a].friction * bodies.surface[b].friction);
-        c->bounce = std::max(bodies.surface[a].bounce, bodies.surface[b].bounce);
+        c->friction = std::sqrt(bodies.surface[c->a].friction * bodies.surface[c->b].friction);
+        c->bounce = std::max(bodies.surface[c->a].bounce, bodies.surface[c->b].bounce);
         c->total = c->approach = 0;
       }
-      continue;
     }
-    pair.margin = margin + 2 * kReuseFollowing * thin;
-    pair.between = between;
-    pair.angleA = bodies.angleRad[a];
-    pair.angleB = bodies.angleRad[b];
-    double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
-    if (clear <= pair.margin)
-      clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, memory_.data() + pair.first,
-                           pair.count, calm_, {});
-    pair.apart = clear >= pair.margin;
-    pair.margin = std::max(pair.margin, clear);
   }
   calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
   for (Contact& contact : lively_) contact.total = contact.approach = 0;
   dropped_.assign(calm_.size(), 0);
+}
+
+bool NarrowPhase::movesFast(const Bodies& bodies, const PairKey& key, double slow, double dt) const {
+  const int a = key.a, b = key.b;
+  const double thin = thinner(bodies, a, b);
+  const double way = relativeSpeed(bodies, a, b) * dt;
+  const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
+  const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
+  const bool pushed =
+      (!bodies.moves(a) && isMoving(bodies, a)) || (!bodies.moves(b) && isMoving(bodies, b));
+  return (pushed && way > kReuse * thin) ||
+         way > (bounces ? std::clamp(slow, kCalmBouncing * thin, kCalm * thin) : kCalm * thin) ||
+         (way > kCalmTurning * thin && turn > kCalmTurn);
+}
+
+bool NarrowPhase::mayKeep(const Bodies& bodies, BodyPair& pair, Vec2 shift, double dt) const {
+  const int a = pair.key.a, b = pair.key.b;
+  const double thin = thinner(bodies, a, b);
+  const double margin = relativeSpeed(bodies, a, b) * dt + expected_[a].room + expected_[b].room;
+  const Vec2 between = bodies.position[b] + shift - bodies.position[a];
+  const double turnedA = std::abs(bodies.angleRad[a] - pair.angleA),
+               turnedB = std::abs(bodies.angleRad[b] - pair.angleB);
+  const double since = length(between - pair.between) + turnedA * bodies.extent[a].turningReach +
+                       turnedB * bodies.extent[b].turningReach;
+  auto follows = [&] {
+    const auto begin = memory_.begin() + pair.first;
+    return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
+  };
+  const bool same = (since <= kReuse * thin && std::max(turnedA, turnedB) <= kReuseTurn) ||
+                    (since <= kReuseFollowing * thin && follows());
+  if ((pair.apart || same) && margin + since <= pair.margin) return true;
+  pair.margin = margin + 2 * kReuseFollowing * thin;
+  pair.between = between;
+  pair.angleA = bodies.angleRad[a];
+  pair.angleB = bodies.angleRad[b];
+  return false;
+}
+
+template <class KeyOf>
+void NarrowPhase::askAhead(std::size_t at, KeyOf&& keyOf, const Bodies& bodies) const {
+  constexpr std::size_t kLong = 8, kSoon = 4;
+  for (const std::size_t ahead : {kLong, kSoon}) {
+    if (at + ahead >= due_.size()) continue;
+    const PairKey key = keyOf(due_[at + ahead]);
+    PairContacts::prefetch(bodies, key.a, ahead == kSoon);
+    PairContacts::prefetch(bodies, key.b, ahead == kSoon);
+  }
 }
 
 void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, int count) {
@@ -133,52 +164,51 @@ void NarrowPhase::listPairs(const Bodies& bodies, const std::vector<BodyPair>& p
   pairsListed_ = true;
 }
 
-void NarrowPhase::refreshPair(LivelyPair& pair, const Bodies& bodies, const BroadPhase& broad, double h,
-                              const std::vector<double>* since) {
+bool NarrowPhase::isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, double h) {
   const int a = pair.key.a, b = pair.key.b;
   const double thin = thinner(bodies, a, b);
   const double way = relativeSpeed(bodies, a, b) * h;
   pair.swept = way > kSwept * thin;
-  const int first = static_cast<int>(next_.size());
   pair.clear -= way;
-  if (pair.clear < 0) {
-    const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
-    const double reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
-    const double near = pair.swept ? way : way + kNear * thin + reuse;
-    const Vec2 shift = broad.shiftOf(pair.key);
-    double clear = clearance(bodies, pair.key, shift, kAhead * near);
-    if (clear <= near)
-      clear = finder_.find(bodies, pair.key, shift, near, h, pair.swept, lively_.data() + pair.first,
-                           pair.count, next_, {since ? std::max((*since)[a], (*since)[b]) : 0, {}, {}});
-    pair.clear = static_cast<int>(next_.size()) > first && !pair.swept ? reuse : clear - near;
-  } else {
-    next_.insert(next_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
-    for (std::size_t k = first; k < next_.size(); ++k) {
-      next_[k].total = next_[k].approach = 0;
-      next_[k].struck = false;
+  if (pair.clear >= 0) {
+    for (int k = pair.first; k < pair.first + pair.count; ++k) {
+      lively_[k].total = lively_[k].approach = 0;
+      lively_[k].struck = false;
     }
+    return false;
   }
-  pair.first = first;
-  pair.count = static_cast<int>(next_.size()) - first;
+  const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
+  pair.reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
+  pair.near = pair.swept ? way : way + kNear * thin + pair.reuse;
+  const double clear = clearance(bodies, pair.key, shift, kAhead * pair.near);
+  if (clear <= pair.near) return true;
+  pair.clear = clear - pair.near;
+  dropContacts(pair);
+  return false;
 }
 
 void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double h,
                           const std::vector<double>* since) {
-  next_.clear();
-  for (LivelyPair& pair : pairs_) refreshPair(pair, bodies, broad, h, since);
-  lively_.swap(next_);
-  refreshed_ = pairs_.size();
+  refreshed_ = 0;
+  refreshNew(bodies, broad, h, since);
 }
 
 void NarrowPhase::refreshNew(const Bodies& bodies, const BroadPhase& broad, double h,
                              const std::vector<double>* since) {
+  due_.clear();
   for (; refreshed_ < pairs_.size(); ++refreshed_) {
     LivelyPair& pair = pairs_[refreshed_];
-    const int first = pair.first, count = pair.count;
+    if (isDue(pair, bodies, broad.shiftOf(pair.key), h)) due_.push_back(static_cast<int>(refreshed_));
+  }
+  for (std::size_t k = 0; k < due_.size(); ++k) {
+    askAhead(k, [&](int due) { return pairs_[due].key; }, bodies);
+    LivelyPair& pair = pairs_[due_[k]];
+    const double later = since ? std::max((*since)[pair.key.a], (*since)[pair.key.b]) : 0;
     next_.clear();
-    refreshPair(pair, bodies, broad, h, since);
-    pair.first = first;
-    pair.count = count;
+    const double clear =
+        finder_.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h, pair.swept,
+                     lively_.data() + pair.first, pair.count, next_, {later, {}, {}});
+    pair.clear = !next_.empty() && !pair.swept ? pair.reuse : clear - pair.near;
     replace(pair);
   }
 }
@@ -221,14 +251,18 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
   }
 }
 
-/// Puts what is in next_ into the place of a pair's contacts, or behind all others; places that are left over
-/// have contacts without a point.
-void NarrowPhase::replace(LivelyPair& pair) {
-  const int count = static_cast<int>(next_.size());
+/// Places that are left over have contacts without a point.
+void NarrowPhase::dropContacts(const LivelyPair& pair) {
   for (int k = pair.first; k < pair.first + pair.count; ++k) {
     lively_[k].count = 0;
     lively_[k].total = lively_[k].bounce = 0;
   }
+}
+
+/// Puts what is in next_ into the place of a pair's contacts, or behind all others.
+void NarrowPhase::replace(LivelyPair& pair) {
+  const int count = static_cast<int>(next_.size());
+  dropContacts(pair);
   if (count <= pair.count) {
     std::copy(next_.begin(), next_.end(), lively_.begin() + pair.first);
   } else {

@@ -61,6 +61,7 @@ class NarrowPhase {
     bool swept = false;        // could pass through each other within a sub-step
     double clear = 0;          // what was found holds until they have moved so far against each other, m
     int pair = -1;             // in the broad phase's list; -1: found within the step
+    double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
   struct Expected {
     Motion velocity;  // at the step's start
@@ -69,8 +70,16 @@ class NarrowPhase {
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
-  void refreshPair(LivelyPair& pair, const Bodies& bodies, const BroadPhase& broad, double h,
-                   const std::vector<double>* since);
+  /// Do the bodies of a pair move too much in a step for what was found at its start?
+  bool movesFast(const Bodies& bodies, const PairKey& key, double slow, double dt) const;
+  /// Do the contacts of the last step still hold? If not: notes for which places they are found now.
+  bool mayKeep(const Bodies& bodies, BodyPair& pair, Vec2 shift, double dt) const;
+  /// Is a lively pair to be looked at in this sub-step?
+  bool isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, double h);
+  void dropContacts(const LivelyPair& pair);
+  /// Asks the memory for what finding the contacts of the next ones in due_ will read.
+  template <class KeyOf>
+  void askAhead(std::size_t at, KeyOf&& keyOf, const Bodies& bodies) const;
 
   std::vector<Contact> calm_, lively_, next_, memory_;
   std::vector<char> dropped_;
@@ -83,6 +92,7 @@ class NarrowPhase {
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in
   bool pairsListed_ = false;
   PairContacts finder_;
+  std::vector<int> due_;  // pairs whose contacts are to be found
   std::vector<PairKey> late_, swept_;
   Passing passing_;
   std::vector<int> leaving_, turned_, crushed_;

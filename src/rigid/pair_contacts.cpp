@@ -53,10 +53,25 @@ void bringUpToDate(const Bodies& bodies, Contact& contact) {
   }
 }
 
+void PairContacts::prefetch(const Bodies& bodies, int body, bool soon) {
+  const ConvexPiece* piece = bodies.extent[body].only;
+  if (!piece) return;
+  auto lines = [](const void* from, std::size_t bytes) {
+    constexpr std::size_t kLine = 64;
+    for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(static_cast<const char*>(from) + at);
+  };
+  if (!soon) {
+    lines(piece, sizeof *piece);
+  } else if (piece->fours.size() <= 2) {
+    lines(piece->fours.data(), piece->fours.size() * sizeof piece->fours[0]);
+    lines(piece->points.data(), piece->points.size() * sizeof piece->points[0]);
+    lines(piece->normals.data(), piece->normals.size() * sizeof piece->normals[0]);
+  }
+}
+
 double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
                           bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
                           const Later& later) {
-  const BodyDef &a = bodies.def[key.a], &b = bodies.def[key.b];
   auto ahead = [&](int body, const Motion& struck) -> Motion {
     const Motion& v = bodies.velocity[body];
     return {struck.x + later.time * v.x, struck.y + later.time * v.y, struck.turn + later.time * v.turn};
@@ -69,16 +84,15 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
   }
   fb.position = fb.position + shift;
   const double rest = h - later.time;
-  const bool onePair = findPiecePairs(*a.shape, fa, *b.shape, fb, margin, pieces_);
-  double clear = onePair ? 1e300 : margin;
+  const Surface &a = bodies.surface[key.a], &b = bodies.surface[key.b];
+  double clear = 1e300;
   Manifold manifold;
-  for (const PiecePair& pieces : pieces_) {
-    const ConvexPiece &pa = a.shape->pieces[pieces.a], &pb = b.shape->pieces[pieces.b];
+  auto meet = [&](const ConvexPiece& pa, const ConvexPiece& pb, PiecePair pieces) {
     const Vec2 apart = toWorld(fb, pb.centre) - toWorld(fa, pa.centre);
     const double near = pa.reach + pb.reach + margin;
     if (dot(apart, apart) > near * near) {
       clear = std::min(clear, length(apart) - pa.reach - pb.reach);
-      continue;
+      return;
     }
     double share = 0;
     Frame ta = fa, tb = fb;
@@ -89,15 +103,15 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
         const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
         const auto hit = timeOfImpact(pa, sa, pb, sb, target);
         clear = 0;
-        if (!hit) continue;
+        if (!hit) return;
         share = *hit;
         ta = frameAt(sa, share);
         tb = frameAt(sb, share);
-        if (!collide(pa, ta, pb, tb, 4 * target, manifold)) continue;
+        if (!collide(pa, ta, pb, tb, 4 * target, manifold)) return;
       }
     } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
       clear = std::min(clear, manifold.apart);
-      continue;
+      return;
     }
     clear = 0;
     Contact contact;
@@ -138,7 +152,16 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
           }
     }
     found.push_back(contact);
+  };
+  const ConvexPiece *onlyA = bodies.extent[key.a].only, *onlyB = bodies.extent[key.b].only;
+  if (onlyA && onlyB) {  // meet() looks first whether they are near
+    meet(*onlyA, *onlyB, {0, 0});
+    return clear;
   }
+  clear = margin;
+  const BodyShape &shapeA = *bodies.def[key.a].shape, &shapeB = *bodies.def[key.b].shape;
+  findPiecePairs(shapeA, fa, shapeB, fb, margin, pieces_);
+  for (const PiecePair& pair : pieces_) meet(shapeA.pieces[pair.a], shapeB.pieces[pair.b], pair);
   return clear;
 }
 

@@ -41,6 +41,9 @@ class PairContacts {
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
               const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
 
+  /// Asks the memory for what find() will read of a body of one piece: long before, and soon before.
+  static void prefetch(const Bodies& bodies, int body, bool soon);
+
  private:
   std::vector<PiecePair> pieces_;
 };
