@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
 
 namespace smokebox {
 
@@ -20,55 +23,58 @@ constexpr double kSpare = 4;
 
 typedef double Four __attribute__((vector_size(32)));
 
-/// Four bodies' motions, one a lane.
-inline void gatherFour(const Motion* from, const int* index, Four& x, Four& y, Four& turn) {
-  const Four r0 = *reinterpret_cast<const Four*>(from + index[0]);
-  const Four r1 = *reinterpret_cast<const Four*>(from + index[1]);
-  const Four r2 = *reinterpret_cast<const Four*>(from + index[2]);
-  const Four r3 = *reinterpret_cast<const Four*>(from + index[3]);
-  const Four s0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6),
-             s1 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6);
-  const Four t0 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7),
-             t1 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-  x = __builtin_shufflevector(s0, s1, 0, 1, 4, 5);
-  y = __builtin_shufflevector(t0, t1, 0, 1, 4, 5);
-  turn = __builtin_shufflevector(s0, s1, 2, 3, 6, 7);
+/// Bodies' motions, two in a row.
+inline Lanes rows(const Motion* from, int low, int high) {
+  const Four a = *reinterpret_cast<const Four*>(from + low), b = *reinterpret_cast<const Four*>(from + high);
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-
-inline Lanes joined(Four low, Four high) {
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-inline Four low(Lanes a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
-inline Four high(Lanes a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
 
 /// Eight bodies' motions, one a lane.
 inline Motions gather(const Motion* from, const int* index) {
-  Four x[2], y[2], turn[2];
-  gatherFour(from, index, x[0], y[0], turn[0]);
-  gatherFour(from, index + 4, x[1], y[1], turn[1]);
-  return {joined(x[0], x[1]), joined(y[0], y[1]), joined(turn[0], turn[1])};
+  const Lanes r02 = rows(from, index[0], index[2]), r13 = rows(from, index[1], index[3]);
+  const Lanes r46 = rows(from, index[4], index[6]), r57 = rows(from, index[5], index[7]);
+  // x and turn, y and nothing: of 0, 1 in the first half, of 2, 3 in the second one; of 4, 5 and 6, 7
+  const Lanes xt = __builtin_shufflevector(r02, r13, 0, 8, 2, 10, 4, 12, 6, 14),
+              y = __builtin_shufflevector(r02, r13, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Lanes xtAfter = __builtin_shufflevector(r46, r57, 0, 8, 2, 10, 4, 12, 6, 14),
+              yAfter = __builtin_shufflevector(r46, r57, 1, 9, 3, 11, 5, 13, 7, 15);
+  return {__builtin_shufflevector(xt, xtAfter, 0, 1, 4, 5, 8, 9, 12, 13),
+          __builtin_shufflevector(y, yAfter, 0, 1, 4, 5, 8, 9, 12, 13),
+          __builtin_shufflevector(xt, xtAfter, 2, 3, 6, 7, 10, 11, 14, 15)};
 }
 
-inline void scatterFour(Motion* to, const int* index, int bits, Four x, Four y, Four turn) {
-  const Four zero = {0, 0, 0, 0};
-  const Four s0 = __builtin_shufflevector(x, y, 0, 4, 1, 5), s1 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
-  const Four t0 = __builtin_shufflevector(turn, zero, 0, 4, 1, 5),
-             t1 = __builtin_shufflevector(turn, zero, 2, 6, 3, 7);
-  if (bits & 1) *reinterpret_cast<Four*>(to + index[0]) = __builtin_shufflevector(s0, t0, 0, 1, 4, 5);
-  if (bits & 2) *reinterpret_cast<Four*>(to + index[1]) = __builtin_shufflevector(s0, t0, 2, 3, 6, 7);
-  if (bits & 4) *reinterpret_cast<Four*>(to + index[2]) = __builtin_shufflevector(s1, t1, 0, 1, 4, 5);
-  if (bits & 8) *reinterpret_cast<Four*>(to + index[3]) = __builtin_shufflevector(s1, t1, 2, 3, 6, 7);
-}
+inline void storeRow(Motion* to, Four row) { *reinterpret_cast<Four*>(to) = row; }
+inline Four low(Lanes a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+inline Four high(Lanes a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
 
 /// Lanes whose bit is not set are left alone: their body does not move, and may be in several lanes.
 inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motions& m) {
-  scatterFour(to, index, bits, low(m.x), low(m.y), low(m.turn));
-  scatterFour(to, index + 4, bits >> 4, high(m.x), high(m.y), high(m.turn));
+  const Lanes xyEven = __builtin_shufflevector(m.x, m.y, 0, 8, 2, 10, 4, 12, 6, 14),
+              xyOdd = __builtin_shufflevector(m.x, m.y, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Lanes zero{};
+  const Lanes turnEven = __builtin_shufflevector(m.turn, zero, 0, 8, 2, 10, 4, 12, 6, 14),
+              turnOdd = __builtin_shufflevector(m.turn, zero, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Lanes r02 = __builtin_shufflevector(xyEven, turnEven, 0, 1, 8, 9, 2, 3, 10, 11),
+              r46 = __builtin_shufflevector(xyEven, turnEven, 4, 5, 12, 13, 6, 7, 14, 15);
+  const Lanes r13 = __builtin_shufflevector(xyOdd, turnOdd, 0, 1, 8, 9, 2, 3, 10, 11),
+              r57 = __builtin_shufflevector(xyOdd, turnOdd, 4, 5, 12, 13, 6, 7, 14, 15);
+  if (bits & 1) storeRow(to + index[0], low(r02));
+  if (bits & 2) storeRow(to + index[1], low(r13));
+  if (bits & 4) storeRow(to + index[2], high(r02));
+  if (bits & 8) storeRow(to + index[3], high(r13));
+  if (bits & 16) storeRow(to + index[4], low(r46));
+  if (bits & 32) storeRow(to + index[5], low(r57));
+  if (bits & 64) storeRow(to + index[6], high(r46));
+  if (bits & 128) storeRow(to + index[7], high(r57));
 }
 
 template <class Short>
 inline Lanes wide(Short a) {
+#ifdef __AVX512F__
+  return reinterpret_cast<Lanes>(_mm512_maskz_cvtps_pd(0xff, reinterpret_cast<__m256>(a)));  // GCC 12 takes it in halves
+#else
   return __builtin_convertvector(a, Lanes);
+#endif
 }
 inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
@@ -217,57 +223,73 @@ inline void ContactBlocks::separate(const Block& block, const Apart& apart, Moti
   scatter(moved, block.b, block.storeB, db);
 }
 
-inline double ContactBlocks::solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first) {
+template <int kPoints>
+inline double ContactBlocks::solvePoints(Block& block, Bodies& bodies, double perSecond, const Apart* first) {
   Motion* velocity = bodies.velocity.data();
   Motion* moved = bodies.moved.data();
-  const Lanes rate = Lanes{} + perSecond;
-  Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
-  Motions da = gather(moved, block.a), db = gather(moved, block.b);
   const Lanes nx = wide(block.nx), ny = wide(block.ny);
+  Motions da = gather(moved, block.a), db = gather(moved, block.b);
   const Lanes apart = nx * (db.x - da.x) + ny * (db.y - da.y);
-  Lanes deepest{}, largest{}, least = Lanes{} + 1e300;
-  for (int k = 0; k < block.count; ++k) {
-    Point& p = block.points[k];
-    if (first) block.total += p.impulseN;  // what the last sub-step came to
+  Lanes allowed[kPoints], deepest{};
+  for (int k = 0; k < kPoints; ++k) {
+    const Point& p = block.points[k];
     const Lanes gap = p.gap + apart + db.turn * wide(p.armBN) - da.turn * wide(p.armAN);
     deepest = smaller(deepest, gap);
-    const Lanes allowed = larger(gap, Lanes{}) * rate;
-    const Lanes vn =
-        nx * (vb.x - va.x) + ny * (vb.y - va.y) + vb.turn * wide(p.armBN) - va.turn * wide(p.armAN);
-    const Lanes parts = vn + allowed;
-    const Lanes total = larger(p.impulseN - wide(p.massN) * parts, Lanes{});
+    allowed[k] = larger(gap, Lanes{}) * (Lanes{} + perSecond);
+    if (first) block.total += p.impulseN;  // what the last sub-step came to
+  }
+  if (first && smallestOf(deepest) < -first->slop) separate(block, *first, moved, da, db);
+
+  // Of b against a; each one's own velocity follows from all the impulses at the end.
+  Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
+  const Lanes inverseA = wide(block.inverseA), inverseB = wide(block.inverseB), inverse = inverseA + inverseB;
+  const Lanes inertiaA = wide(block.inertiaA), inertiaB = wide(block.inertiaB);
+  Lanes x = vb.x - va.x, y = vb.y - va.y;
+  Lanes normal{}, tangential{}, largest{}, least = Lanes{} + 1e300;
+  for (int k = 0; k < kPoints; ++k) {
+    Point& p = block.points[k];
+    const Lanes armAN = wide(p.armAN), armBN = wide(p.armBN), massN = wide(p.massN);
+    const Lanes parts = (nx * x + ny * y) + (vb.turn * armBN - va.turn * armAN) + allowed[k];
+    const Lanes total = larger(p.impulseN - massN * parts, Lanes{});
     const Lanes change = total - p.impulseN;
     p.impulseN = total;
-    va.x -= wide(block.inverseA) * nx * change;
-    va.y -= wide(block.inverseA) * ny * change;
-    va.turn -= wide(block.inertiaA) * wide(p.armAN) * change;
-    vb.x += wide(block.inverseB) * nx * change;
-    vb.y += wide(block.inverseB) * ny * change;
-    vb.turn += wide(block.inertiaB) * wide(p.armBN) * change;
+    normal += change;
+    x += nx * (inverse * change);
+    y += ny * (inverse * change);
+    va.turn -= inertiaA * armAN * change;
+    vb.turn += inertiaB * armBN * change;
     // The change of the velocity: all that was amiss, or less where the contact lets go.
     const Lanes amiss = parts < 0 ? -parts : parts;
     largest = larger(largest, change != 0 ? amiss : Lanes{});
-    least = smaller(least, wide(p.massN) > 0 ? (total > 0 ? Lanes{} : parts) : Lanes{} + 1e300);
+    least = smaller(least, massN > 0 ? (total > 0 ? Lanes{} : parts) : Lanes{} + 1e300);
 
-    const Lanes vt =
-        nx * (vb.y - va.y) - ny * (vb.x - va.x) + vb.turn * wide(p.armBT) - va.turn * wide(p.armAT);
-    const Lanes most = wide(block.friction) * p.impulseN;
-    const Lanes tangential = smaller(larger(p.impulseT - wide(p.massT) * vt, -most), most);
-    const Lanes slide = tangential - p.impulseT;
-    p.impulseT = tangential;
-    va.x += wide(block.inverseA) * ny * slide;
-    va.y -= wide(block.inverseA) * nx * slide;
-    va.turn -= wide(block.inertiaA) * wide(p.armAT) * slide;
-    vb.x -= wide(block.inverseB) * ny * slide;
-    vb.y += wide(block.inverseB) * nx * slide;
-    vb.turn += wide(block.inertiaB) * wide(p.armBT) * slide;
+    const Lanes armAT = wide(p.armAT), armBT = wide(p.armBT);
+    const Lanes vt = (nx * y - ny * x) + (vb.turn * armBT - va.turn * armAT);
+    const Lanes most = wide(block.friction) * total;
+    const Lanes held = smaller(larger(p.impulseT - wide(p.massT) * vt, -most), most);
+    const Lanes slide = held - p.impulseT;
+    p.impulseT = held;
+    tangential += slide;
+    x -= ny * (inverse * slide);
+    y += nx * (inverse * slide);
+    va.turn -= inertiaA * armAT * slide;
+    vb.turn += inertiaB * armBT * slide;
   }
-  if (first && smallestOf(deepest) < -first->slop) separate(block, *first, moved, da, db);
+  const Lanes px = nx * normal - ny * tangential, py = ny * normal + nx * tangential;
+  va.x -= inverseA * px;
+  va.y -= inverseA * py;
+  vb.x += inverseB * px;
+  vb.y += inverseB * py;
   block.spare = smallestOf(least);
   block.change = largestOf(largest);
   scatter(velocity, block.a, block.storeA, va);
   scatter(velocity, block.b, block.storeB, vb);
   return block.change;
+}
+
+inline double ContactBlocks::solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first) {
+  return block.count == 2 ? solvePoints<2>(block, bodies, perSecond, first)
+                          : solvePoints<1>(block, bodies, perSecond, first);
 }
 
 double ContactBlocks::solve(Bodies& bodies, double h, const Apart* first) {

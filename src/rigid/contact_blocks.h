@@ -63,6 +63,8 @@ class ContactBlocks {
 
  private:
   struct Block;
+  template <int kPoints>
+  static double solvePoints(Block& block, Bodies& bodies, double perSecond, const Apart* first);
   static double solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first);
   static void separate(const Block& block, const Apart& apart, Motion* moved, Motions& da, Motions& db);
   static void readLane(const Block& block, int lane, Contact& contact);
