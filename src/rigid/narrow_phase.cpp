@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rigid/contact_sweeps.h"
 
@@ -30,6 +31,7 @@ constexpr double kAhead = 4;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 bool isMoving(const Bodies& bodies, int body) {
   const Motion& v = bodies.velocity[body];
@@ -44,11 +46,14 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   elapsed_ = 0;
   const double slow = kCalmSubSteps * h_ * length(gravity) * dt;
   expected_.resize(count);
-  stirred_.assign(count, 0);
+  stirred_.clear();
+  way_.resize(count);
   for (int b = 0; b < count; ++b) {
-    if (!bodies.there[b]) continue;
+    const Motion& v = bodies.velocity[b];
+    const bool moves = bodies.there[b] && bodies.moves(b);
     const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
-    expected_[b] = {bodies.velocity[b], bodies.moves(b) ? fall + kStray * bodies.extent[b].thinnest : 0};
+    const double room = moves ? fall + kStray * bodies.extent[b].thinnest : 0;
+    expected_[b] = {v.x, v.y, v.turn, room, moves ? room : kNoBound, bodies.extent[b].turningReach};
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
@@ -272,38 +277,50 @@ void NarrowPhase::replace(LivelyPair& pair) {
   pair.count = count;
 }
 
-NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad,
+NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>* struck, BroadPhase& broad,
                                     Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
   leaving_.clear();
   turned_.clear();
-  const double t = elapsed_ + h_, ahead = timeLeft > 1.5 * h_ ? 1 : 0;
+  const double t = elapsed_ + h_;
+  auto wayOf = [&](int b) -> Motion {
+    const Motion &v = bodies.velocity[b], by = struck ? (*struck)[b] : Motion{};
+    return {by.x + h_ * v.x, by.y + h_ * v.y, by.turn + h_ * v.turn};
+  };
   bool now = false;
-  for (int b = 0; b < bodies.count(); ++b) {
-    if (!bodies.moves(b) || !bodies.there[b]) continue;
+  // Those whose pairs are lively already: does the box still hold the way?
+  for (const int b : stirred_) {
+    const Motion& v = bodies.velocity[b];
     Expected& e = expected_[b];
-    if (stirred_[b]) {  // its pairs are lively, but does its box still hold its way?
-      const Motion& v = bodies.velocity[b];
-      const Vec2 changed = v.linear() - e.velocity.linear();
-      const double slack = 0.5 * e.room / timeLeft;
-      if (dot(changed, changed) <= slack * slack) continue;
-      now |= length(changed) * h_ > 0.5 * e.room;
-      e.velocity = v;
-      turned_.push_back(b);
-      continue;
-    }
-    const Motion &m = bodies.moved[b], &w = way[b];
-    auto leaves = [&](double later) {
-      const Vec2 off = m.linear() + (1 + later) * w.linear() - (t + later * h_) * e.velocity.linear();
-      const double turned = m.turn + (1 + later) * w.turn - (t + later * h_) * e.velocity.turn;
-      const double left = e.room - std::abs(turned) * bodies.extent[b].turningReach;
-      return left < 0 || dot(off, off) > left * left;
+    const Vec2 changed{v.x - e.x, v.y - e.y};
+    const double slack = 0.5 * e.room / timeLeft;
+    if (dot(changed, changed) <= slack * slack) continue;
+    now |= length(changed) * h_ > 0.5 * e.room;
+    e.x = v.x;
+    e.y = v.y;
+    turned_.push_back(b);
+  }
+  const double later = timeLeft > 1.5 * h_ ? 1 : 0;
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Expected& e = expected_[b];
+    const Motion &m = bodies.moved[b], w = wayOf(b);
+    auto leaves = [&](double x, double y, double turned) {
+      const double left = e.limit - std::abs(turned) * e.reach;
+      return left < 0 || x * x + y * y > left * left;
     };
-    const bool leavesNow = leaves(0);
-    if (!leavesNow && !leaves(ahead)) continue;
+    const double x = m.x + w.x - t * e.x, y = m.y + w.y - t * e.y, turn = m.turn + w.turn - t * e.turn;
+    const bool leavesNow = leaves(x, y, turn);
+    if (!leavesNow && !leaves(x + later * (w.x - h_ * e.x), y + later * (w.y - h_ * e.y),
+                              turn + later * (w.turn - h_ * e.turn)))
+      continue;
     now |= leavesNow;
-    stirred_[b] = 1;
-    e.velocity = bodies.velocity[b];
     leaving_.push_back(b);
+  }
+  for (const int b : leaving_) {
+    const Motion& v = bodies.velocity[b];
+    expected_[b].x = v.x;
+    expected_[b].y = v.y;
+    expected_[b].limit = kNoBound;
+    stirred_.push_back(b);
   }
   if (leaving_.empty() && turned_.empty()) return Stir::none;
   bool any = false;
@@ -324,7 +341,8 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
     }
   late_.clear();
   leaving_.insert(leaving_.end(), turned_.begin(), turned_.end());
-  broad.extend(bodies, leaving_, way, gravity, timeLeft, late_);
+  for (const int b : leaving_) way_[b] = wayOf(b);
+  broad.extend(bodies, leaving_, way_, gravity, timeLeft, late_);
   for (const PairKey& key : late_) {
     makeLively(key, -1, nullptr, 0);
     any = true;
@@ -332,17 +350,14 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
   return !any ? Stir::none : now ? Stir::now : Stir::later;
 }
 
+bool NarrowPhase::mayPass(const Bodies& bodies, double h) const {
+  return std::any_of(pairs_.begin(), pairs_.end(), [&](const LivelyPair& pair) {
+    return relativeSpeed(bodies, pair.key.a, pair.key.b) * h > kSwept * thinner(bodies, pair.key.a, pair.key.b);
+  });
+}
+
 void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, double h,
                               const std::vector<double>* since, std::vector<Motion>& way) {
-  const bool any = std::any_of(pairs_.begin(), pairs_.end(), [&](const LivelyPair& pair) {
-    const int a = pair.key.a, b = pair.key.b;
-    const Motion &wa = way[a], &wb = way[b];
-    const double most = length(wa.linear() - wb.linear()) +
-                        std::abs(wa.turn) * bodies.extent[a].turningReach +
-                        std::abs(wb.turn) * bodies.extent[b].turningReach;
-    return most > kSwept * thinner(bodies, a, b);
-  });
-  if (!any) return;
   swept_.clear();
   for (const LivelyPair& pair : pairs_) swept_.push_back(pair.key);
   passing_.stop(bodies, broad, swept_, h, since, way);

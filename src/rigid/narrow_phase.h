@@ -28,12 +28,14 @@ class NarrowPhase {
   /// have had none themselves.
   void refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
                            const std::vector<Motion>& struck, const std::vector<double>& struckAt);
-  /// Bodies that would leave the way that was expected of them if they moved by `way` now, or in the next
-  /// sub-step: from then on their pairs are lively. `now`: some do now (look at the new ones before they
-  /// move).
+  /// Bodies that would leave the way that was expected of them if they moved as fast as now, and by `struck`
+  /// (null: nothing), in this sub-step or in the next one: from then on their pairs are lively. `now`: some do
+  /// now (look at the new ones before they move).
   enum class Stir { none, later, now };
-  Stir stir(const Bodies& bodies, const std::vector<Motion>& way, BroadPhase& broad, Vec2 gravity,
+  Stir stir(const Bodies& bodies, const std::vector<Motion>* struck, BroadPhase& broad, Vec2 gravity,
             ContactBlocks& blocks, double timeLeft);
+  /// May any lively pair pass through each other within the sub-step?
+  bool mayPass(const Bodies& bodies, double h) const;
   /// Pairs that would pass through each other by moving `way`: both are stopped where they meet.
   void stopPassing(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since,
                    std::vector<Motion>& way);
@@ -64,8 +66,10 @@ class NarrowPhase {
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
   struct Expected {
-    Motion velocity;  // at the step's start
-    double room = 0;  // how far its points may be from where that takes them
+    double x = 0, y = 0, turn = 0;  // velocity at the step's start, m/s and rad/s
+    double room = 0;                // how far its points may be from where that takes them, m
+    double limit = 0;               // the same while its pairs are calm and may be stirred, else without bound
+    double reach = 0;               // how far a turn moves its points, m/rad
   };
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair);
@@ -86,7 +90,8 @@ class NarrowPhase {
   std::vector<LivelyPair> pairs_;
   std::size_t refreshed_ = 0;  // so many of them have been looked at in this sub-step
   std::vector<Expected> expected_;
-  std::vector<char> stirred_;
+  std::vector<int> stirred_;
+  std::vector<Motion> way_;  // of those that leave theirs
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs
   std::vector<int> calmFirst_;             // by pair: range in calm_
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in

@@ -28,16 +28,19 @@ constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 }  // namespace
 
 void RigidSystem::State::warmStartAll(double h) {
-  start = bodies.velocity;
-  if (shareKnown)  // the calm contacts' normals and arms are the same all through the step: so is their sum
-    for (int b = kWalls; b < bodies.count(); ++b) {
+  start.resize(bodies.count());
+  if (shareKnown) {  // the calm contacts' normals and arms are the same all through the step: so is their sum
+    for (int b = 0; b < bodies.count(); ++b) {
       Motion& v = bodies.velocity[b];
+      start[b] = v;
       v.x += calmShare[b].x;
       v.y += calmShare[b].y;
       v.turn += calmShare[b].turn;
     }
-  else
+  } else {
+    start = bodies.velocity;
     blocks.warmStart(bodies);
+  }
   warmStart(bodies, spare);
   warmStart(bodies, narrow.lively());
   springs.warmStart(bodies, h);
@@ -165,10 +168,9 @@ void RigidSystem::State::solveContacts(double h) {
       if (accelerates && sweeps >= kPlainSweeps)
         conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
     }
-    findWays(h, false);
     giveBackSpare();
     // Who would stray from the way expected of it has its pairs looked at again, before it moves.
-    const auto stir = narrow.stir(bodies, way, broad, gravity, blocks, timeLeft);
+    const auto stir = narrow.stir(bodies, nullptr, broad, gravity, blocks, timeLeft);
     if (stir == NarrowPhase::Stir::none) break;
     stirred = true;
     for (std::size_t k = 0; k < spare.size(); ++k)
@@ -185,7 +187,6 @@ void RigidSystem::State::solveContacts(double h) {
   narrow.yieldCrushed(bodies, start);
   press.yield(bodies);
   if (mayBounce) findFlying(h);
-  findWays(h, false);
   findCalmShare();
 }
 

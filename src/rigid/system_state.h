@@ -41,8 +41,8 @@ struct RigidSystem::State {
   void findCalmShare();
   void findFlying(double h);
   void yieldTorn();
-  void findWays(double h, bool withStruck);
   void impacts(double h);
+  void moveOn(double h);
   bool isSqueezed(const Contact& contact) const;
   bool meetsFast(const Contact& contact, double h) const;
   void keepInside();
@@ -72,7 +72,7 @@ struct RigidSystem::State {
   bool shareKnown = false;
   bool firstOfStep = false;  // sub-step
   bool stirred = false, anyStruck = false, mayBounce = false;
-  std::vector<Motion> way;  // all of that
+  std::vector<Motion> way;         // of a sub-step, where pairs may pass through each other
 
   /// What a time does to a body's velocity by itself: gravity, and damping that decays exponentially.
   struct Drive {

@@ -213,9 +213,8 @@ void RigidSystem::State::impacts(double h) {
     impact.run(bodies, bouncers, h, gravity, least, struck, round > 0);
     if (impact.count() == 0) return;
     anyStruck = true;
-    findWays(h, true);
     giveBackSpare();
-    if (narrow.stir(bodies, way, broad, gravity, blocks, timeLeft) != NarrowPhase::Stir::none)
+    if (narrow.stir(bodies, &struck, broad, gravity, blocks, timeLeft) != NarrowPhase::Stir::none)
       shareKnown = false;
     narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
   }
@@ -238,21 +237,27 @@ bool RigidSystem::State::meetsFast(const Contact& contact, double h) const {
   return false;
 }
 
-void RigidSystem::State::findWays(double h, bool withStruck) {
+void RigidSystem::State::moveOn(double h) {
+  const bool mayPass = narrow.mayPass(bodies, h);
+  if (mayPass) {
+    for (int b = kWalls; b < bodies.count(); ++b) {
+      const Motion& v = bodies.velocity[b];
+      way[b] = {h * v.x, h * v.y, h * v.turn};
+    }
+    narrow.stopPassing(bodies, broad, h, anyStruck ? &impact.moments() : nullptr, way);
+  }
+  const std::vector<Motion>& by = mayPass ? way : bodies.velocity;
+  const double times = mayPass ? 1 : h;
   for (int b = kWalls; b < bodies.count(); ++b) {
-    const Motion &v = bodies.velocity[b], by = withStruck ? struck[b] : Motion{};
-    way[b] = {by.x + h * v.x, by.y + h * v.y, by.turn + h * v.turn};
+    Motion& m = bodies.moved[b];
+    m.x += times * by[b].x;
+    m.y += times * by[b].y;
+    m.turn += times * by[b].turn;
   }
 }
 
 void RigidSystem::State::move(double h) {
-  narrow.stopPassing(bodies, broad, h, anyStruck ? &impact.moments() : nullptr, way);
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    Motion& m = bodies.moved[b];
-    m.x += way[b].x;
-    m.y += way[b].y;
-    m.turn += way[b].turn;
-  }
+  moveOn(h);
   const double most = kSeparateSpeed * h;
   separate(bodies, spare, kSeparateShare, most);
   separate(bodies, narrow.lively(), kSeparateShare, most);
