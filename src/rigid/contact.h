@@ -18,10 +18,11 @@ struct ContactPoint {
 struct Contact {
   int a = 0, b = 0;
   int pieceA = 0, pieceB = 0;
-  Vec2 normal;  // from a to b
-  Vec2 shift;   // of the image of b that is meant, beyond a periodic side
   int count = 0;
-  int face = 0;  // whose edge gives the normal and meets corners: 1 a, 2 b; 0: none
+  int face = 0;      // whose edge gives the normal and meets corners: 1 a, 2 b; 0: none
+  double spare = 0;  // parted faster than it needs by so much in the last sweep, m/s; 0: bears
+  Vec2 normal;       // from a to b
+  Vec2 shift;        // of the image of b that is meant, beyond a periodic side
   double friction = 0, bounce = 0;
   double approach = 0;  // fastest at which its points met in this step, m/s
   bool struck = false;  // had an impact in this sub-step

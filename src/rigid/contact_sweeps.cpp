@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace smokebox {
 
@@ -104,10 +105,17 @@ double solve(Bodies& bodies, Contact& contact) {
     push(n, p, by);
     if (p.massN > 0) largest = std::max(largest, std::abs(by) / p.massN);
   };
+  contact.spare = 0;
+  double parts = std::numeric_limits<double>::infinity();
   auto isIdle = [&](const ContactPoint& p) {
-    return p.impulseN == 0 && p.impulseT == 0 && speed(n, p) + p.allowed >= 0;
+    if (p.impulseN != 0 || p.impulseT != 0) return false;
+    parts = std::min(parts, speed(n, p) + p.allowed);
+    return parts >= 0;
   };
-  if (isIdle(contact.points[0]) && (contact.count == 1 || isIdle(contact.points[1]))) return 0;
+  if (isIdle(contact.points[0]) && (contact.count < 2 || isIdle(contact.points[1]))) {
+    contact.spare = parts;
+    return 0;
+  }
   if (areTwo(contact)) {
     ContactPoint &p = contact.points[0], &q = contact.points[1];
     const double* k = contact.response;
@@ -135,9 +143,10 @@ double solve(Bodies& bodies, Contact& contact) {
   return largest;
 }
 
-double solve(Bodies& bodies, std::vector<Contact>& contacts) {
+double solve(Bodies& bodies, std::vector<Contact>& contacts, double enough) {
   double largest = 0;
-  for (Contact& contact : contacts) largest = std::max(largest, solve(bodies, contact));
+  for (Contact& contact : contacts)
+    if (contact.spare <= enough) largest = std::max(largest, solve(bodies, contact));
   return largest;
 }
 

@@ -27,8 +27,8 @@ void warmStart(Bodies& bodies, const std::vector<Contact>& contacts);
 void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h);
 /// Gives the largest change of a relative velocity, m/s, and notes it in the contact.
 double solve(Bodies& bodies, Contact& contact);
-/// One sweep.
-double solve(Bodies& bodies, std::vector<Contact>& contacts);
+/// One sweep; contacts that parted faster than they need by more than `enough`, m/s, are left out.
+double solve(Bodies& bodies, std::vector<Contact>& contacts, double enough);
 void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most);
 
 }  // namespace smokebox

@@ -36,7 +36,7 @@ struct RigidSystem::State {
   void setInverse(int body);
   /// Lets the bodies of a joint pass through each other, or no longer.
   void setJoined(const JointDef& joint, bool on);
-  double sweep(double h, bool first);
+  double sweep(double h, bool first, double enough);
   void sweepRough(double h, double change);
   void findCalmShare();
   void findFlying(double h);

@@ -269,11 +269,12 @@ void RigidSystem::State::move(double h) {
 
 // Whatever presses, no centre of mass goes through a closed side of the domain.
 void RigidSystem::State::keepInside() {
+  constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
   const auto closed = RigidWalls::Kind::closed;
   const bool shut[] = {walls.sides[0] == closed, walls.sides[1] == closed, walls.sides[2] == closed,
                        walls.sides[3] == closed};
   auto keep = [](double at, double size, bool low, bool high, double& moved, double& speed) {
-    const double edge = 1e-12 * size;  // inside by more than a rounding
+    const double edge = kEdge * size;
     if (low && at < edge) {
       moved += edge - at;
       speed = std::max(speed, 0.0);
@@ -282,9 +283,11 @@ void RigidSystem::State::keepInside() {
       speed = std::min(speed, 0.0);
     }
   };
+  const Vec2 edge{kEdge * walls.width, kEdge * walls.height};
   for (int b = kWalls; b < bodies.count(); ++b) {
-    if (!bodies.moves(b)) continue;
     const Vec2 at = bodies.positionNow(b);
+    if (at.x > edge.x && at.x < walls.width - edge.x && at.y > edge.y && at.y < walls.height - edge.y) continue;
+    if (!bodies.moves(b)) continue;
     keep(at.x, walls.width, shut[0], shut[1], bodies.moved[b].x, bodies.velocity[b].x);
     keep(at.y, walls.height, shut[2], shut[3], bodies.moved[b].y, bodies.velocity[b].y);
   }
