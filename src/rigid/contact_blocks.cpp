@@ -76,6 +76,9 @@ inline Lanes wide(Short a) {
   return __builtin_convertvector(a, Lanes);
 #endif
 }
+inline ContactBlocks::ShortLanes brief(Lanes a) {
+  return __builtin_convertvector(a, ContactBlocks::ShortLanes);
+}
 inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 inline double largestOf(Lanes a) {
@@ -140,46 +143,74 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
     }
     blocks = (lane + kLanes - 1) / kLanes;
   }
-  blocks_.assign(blocks, Block{});
-  for (Block& block : blocks_)
-    for (int l = 0; l < kLanes; ++l) block.contact[l] = -1;
-  for (int k = 0; k < count; ++k) {
-    if (colour_[k] < 0) continue;
-    const int at = start_[kind_[k]]++;
-    place_[k] = at;
-    Block& block = blocks_[at / kLanes];
-    const int l = at % kLanes;
-    const Contact& c = contacts[k];
+  inLane_.assign(kLanes * blocks, -1);
+  for (int k = 0; k < count; ++k)
+    if (colour_[k] >= 0) inLane_[place_[k] = start_[kind_[k]]++] = k;
+  blocks_.resize(blocks);
+  for (std::size_t k = 0; k < blocks; ++k) {
+    fill(blocks_[k], bodies, contacts, inLane_.data() + kLanes * k);
+    points_ += kLanes * blocks_[k].count;
+  }
+}
+
+void ContactBlocks::fill(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts,
+                         const int* which) {
+  block = Block{};
+  struct {
+    Lanes inverseA{}, inertiaA{}, inverseB{}, inertiaB{};
+    Lanes armAN[2]{}, armBN[2]{}, armAT[2]{}, armBT[2]{};
+  } exact;
+  for (int l = 0; l < kLanes; ++l) {
+    block.contact[l] = which[l];
+    if (which[l] < 0) continue;
+    const Contact& c = contacts[which[l]];
     block.a[l] = c.a;
     block.b[l] = c.b;
-    block.contact[l] = k;
     block.count = std::max(block.count, c.count);
-    if (bodies.moves(c.a)) block.storeA |= 1 << l;
-    if (bodies.moves(c.b)) block.storeB |= 1 << l;
+    const InverseMass &a = bodies.inverse[c.a], &b = bodies.inverse[c.b];
+    if (a.mass > 0) block.storeA |= 1 << l;
+    if (b.mass > 0) block.storeB |= 1 << l;
     block.nx[l] = static_cast<float>(c.normal.x);
     block.ny[l] = static_cast<float>(c.normal.y);
     block.friction[l] = static_cast<float>(c.friction);
-    block.inverseA[l] = static_cast<float>(bodies.inverse[c.a].mass);
-    block.inertiaA[l] = static_cast<float>(bodies.inverse[c.a].inertia);
-    block.inverseB[l] = static_cast<float>(bodies.inverse[c.b].mass);
-    block.inertiaB[l] = static_cast<float>(bodies.inverse[c.b].inertia);
+    exact.inverseA[l] = a.mass;
+    exact.inertiaA[l] = a.inertia;
+    exact.inverseB[l] = b.mass;
+    exact.inertiaB[l] = b.inertia;
     const Vec2 tangent = perpendicular(c.normal);
     for (int p = 0; p < c.count; ++p) {
       const ContactPoint& from = c.points[p];
+      exact.armAN[p][l] = cross(from.armA, c.normal);
+      exact.armBN[p][l] = cross(from.armB, c.normal);
+      exact.armAT[p][l] = cross(from.armA, tangent);
+      exact.armBT[p][l] = cross(from.armB, tangent);
       Point& to = block.points[p];
-      to.armAN[l] = static_cast<float>(cross(from.armA, c.normal));
-      to.armBN[l] = static_cast<float>(cross(from.armB, c.normal));
-      to.armAT[l] = static_cast<float>(cross(from.armA, tangent));
-      to.armBT[l] = static_cast<float>(cross(from.armB, tangent));
       to.gap[l] = from.gap;
-      to.massN[l] = static_cast<float>(from.massN);
-      to.massT[l] = static_cast<float>(from.massT);
       to.impulseN[l] = from.impulseN;
-      block.total[l] -= from.impulseN;  // which the first sweep counts, but belongs to the step before
       to.impulseT[l] = from.impulseT;
+      block.total[l] -= from.impulseN;  // which the first sweep counts, but belongs to the step before
     }
   }
-  for (const Block& block : blocks_) points_ += kLanes * block.count;
+  block.inverseA = brief(exact.inverseA);
+  block.inertiaA = brief(exact.inertiaA);
+  block.inverseB = brief(exact.inverseB);
+  block.inertiaB = brief(exact.inertiaB);
+  for (int p = 0; p < block.count; ++p) {
+    Point& to = block.points[p];
+    to.armAN = brief(exact.armAN[p]);
+    to.armBN = brief(exact.armBN[p]);
+    to.armAT = brief(exact.armAT[p]);
+    to.armBT = brief(exact.armBT[p]);
+    auto mass = [&](Lanes armA, Lanes armB) {
+      const Lanes inverse = exact.inverseA + exact.inverseB + exact.inertiaA * armA * armA +
+                            exact.inertiaB * armB * armB;
+      return brief(inverse > 0 ? 1 / inverse : Lanes{});
+    };
+    to.massN = mass(exact.armAN[p], exact.armBN[p]);
+    to.massT = mass(exact.armAT[p], exact.armBT[p]);
+    for (int l = 0; l < kLanes; ++l)  // a contact of one point beside one of two
+      if (which[l] >= 0 && contacts[which[l]].count <= p) to.massN[l] = to.massT[l] = 0;
+  }
 }
 
 void ContactBlocks::warmStart(Bodies& bodies) const {

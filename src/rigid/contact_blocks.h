@@ -17,11 +17,12 @@ class ContactBlocks {
  public:
   static constexpr int kLanes = 8;
   typedef double Lanes __attribute__((vector_size(64)));
+  typedef float ShortLanes __attribute__((vector_size(32)));
   struct Motions {
     Lanes x, y, turn;
   };
 
-  /// Colours the contacts and lays them out; `down`: along gravity, of length 1, or (0, 0). Those that find
+  /// Colours the contacts, which need no effective masses, and lays them out; `down`: along gravity, of length 1, or (0, 0). Those that find
   /// no colour are listed in `rest`.
   void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest, Vec2 down);
   bool empty() const { return blocks_.empty(); }
@@ -67,10 +68,10 @@ class ContactBlocks {
   static double solvePoints(Block& block, Bodies& bodies, double perSecond, const Apart* first);
   static double solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first);
   static void separate(const Block& block, const Apart& apart, Motion* moved, Motions& da, Motions& db);
+  static void fill(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts, const int* which);
   static void readLane(const Block& block, int lane, Contact& contact);
   // What does not change is kept short: a sweep over many contacts waits for the memory. Both bodies get the
   // same impulse, so momentum is kept to rounding whatever the normal's.
-  typedef float ShortLanes __attribute__((vector_size(32)));
   struct Point {
     ShortLanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
     ShortLanes massN, massT;
@@ -94,7 +95,7 @@ class ContactBlocks {
   double change_ = 0;                       // of the last sweep
   std::vector<std::uint64_t> used_;         // colours at each body
   std::vector<int> colour_, kind_, place_;  // by contact: colour; block * kLanes + lane, or -1
-  std::vector<int> start_;
+  std::vector<int> start_, inLane_;
   struct Brief {
     int a, b, rank, count;
   };

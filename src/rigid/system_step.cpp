@@ -139,7 +139,10 @@ void RigidSystem::State::beginStep(double step) {
   const double pull = length(gravity);
   blocks.build(bodies, narrow.calm(), uncoloured, pull > 0 ? (1 / pull) * gravity : Vec2{});
   spare.clear();
-  for (const int k : uncoloured) spare.push_back(narrow.calm()[k]);
+  for (const int k : uncoloured) {
+    spare.push_back(narrow.calm()[k]);
+    setMasses(bodies, spare.back());
+  }
   mayBounce = false;
   int moving = 0;
   typicalWidth = 0;
