@@ -31,19 +31,17 @@ double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double en
   return std::max({circles, boxA, distanceFrom(b, fb, pa) - a.reach});
 }
 
-void bringUpToDate(const Bodies& bodies, Contact& contact) {
+void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contact& contact) {
   for (int k = 0; k < contact.count; ++k)
     contact.points[k].gap += gapMoved(bodies, contact, contact.points[k]);
-  const int edges = contact.face == 1 ? contact.a : contact.b;
-  const Motion &da = bodies.moved[contact.a], &db = bodies.moved[contact.b];
   if (contact.face == 0) return;
-  const Turn by = turnedBy({}, bodies.moved[edges].turn);
-  contact.normal = rotate(by, contact.normal);
-  const Turn corners = turnedBy({}, contact.face == 1 ? db.turn : da.turn);
+  const bool edgeOfA = contact.face == 1;
+  contact.normal = rotate(turned[edgeOfA ? contact.a : contact.b], contact.normal);
+  const Turn corners = turned[edgeOfA ? contact.b : contact.a];
   const Vec2 apart = bodies.positionNow(contact.b) + contact.shift - bodies.positionNow(contact.a);
   for (int k = 0; k < contact.count; ++k) {
     ContactPoint& p = contact.points[k];
-    if (contact.face == 1) {
+    if (edgeOfA) {
       p.armB = rotate(corners, p.armB);
       p.armA = p.armB + apart;
     } else {

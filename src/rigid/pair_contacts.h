@@ -25,8 +25,9 @@ inline double relativeSpeed(const Bodies& bodies, int a, int b) {
 /// and the circle of the other. `enough`: what needs no better one.
 double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough);
 /// Moves a contact along with its bodies, which have moved a little since it was found: the normal turns with
-/// the one whose edge it stands on, the points go with the other one's corners.
-void bringUpToDate(const Bodies& bodies, Contact& contact);
+/// the one whose edge it stands on, the points go with the other one's corners. `turned`: by body, by how much
+/// since.
+void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contact& contact);
 
 class PairContacts {
  public:

@@ -48,6 +48,7 @@ struct RigidSystem::State {
   void keepInside();
   void warmStartAll(double h);
   void collectTouch(const Contact& contact);
+  void sortTouches(std::ptrdiff_t calm);
   void wrap(int body);
   bool outside(int body) const;
 
@@ -99,6 +100,7 @@ struct RigidSystem::State {
   SpringSet springs;
   JointSet joints;
 
+  std::vector<Turn> turned;  // by how much since the step began
   std::vector<Touch> touches;
   RigidTotals contactTotals;  // contacts and overlap of the last step
   std::vector<int> gone;

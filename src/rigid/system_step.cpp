@@ -270,6 +270,17 @@ void RigidSystem::State::move(double h) {
   timeLeft -= h;
 }
 
+// Those of the calm pairs, from `calm` on, are in order already, but for the walls'.
+void RigidSystem::State::sortTouches(std::ptrdiff_t calm) {
+  auto isBefore = [](const Touch& p, const Touch& q) { return p.a < q.a || (p.a == q.a && p.b < q.b); };
+  const auto middle = touches.begin() + calm;
+  const auto ofBodies =
+      std::partition_point(middle, touches.end(), [](const Touch& touch) { return touch.a < 0; });
+  std::stable_sort(touches.begin(), middle, isBefore);
+  std::stable_sort(middle, ofBodies, isBefore);
+  std::inplace_merge(touches.begin(), middle, touches.end(), isBefore);
+}
+
 // Whatever presses, no centre of mass goes through a closed side of the domain.
 void RigidSystem::State::keepInside() {
   constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
@@ -351,17 +362,18 @@ void RigidSystem::State::endStep(double step) {
     }
   };
   for (const Contact& contact : narrow.lively()) count(contact);
+  turned.resize(bodies.count());
+  for (int b = 0; b < bodies.count(); ++b) turned[b] = turnedBy({}, bodies.moved[b].turn);
+  const auto ofLively = static_cast<std::ptrdiff_t>(touches.size());
   for (std::size_t k = 0; k < narrow.calm().size(); ++k) {
     Contact& contact = narrow.calm()[k];
     blocks.readBack(static_cast<int>(k), contact);
     if (!narrow.isDropped(static_cast<int>(k))) count(contact);
     collectTouch(contact);
-    bringUpToDate(bodies, contact);  // it may be used again
+    bringUpToDate(bodies, turned, contact);  // it may be used again
   }
   if (pressing) press.end(bodies);
-  // Touches of one pair within the step become one.
-  std::stable_sort(touches.begin(), touches.end(),
-                   [](const Touch& p, const Touch& q) { return p.a < q.a || (p.a == q.a && p.b < q.b); });
+  sortTouches(ofLively);
   narrow.endStep(broad);
   springs.endStep(bodies);
   joints.endStep(bodies);
