@@ -33,11 +33,6 @@ constexpr double kAhead = 4;
 constexpr double kNear = 0.01;
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-bool isMoving(const Bodies& bodies, int body) {
-  const Motion& v = bodies.velocity[body];
-  return v.x != 0 || v.y != 0 || v.turn != 0;
-}
-
 }  // namespace
 
 void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
@@ -46,6 +41,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   elapsed_ = 0;
   const double slow = kCalmSubSteps * h_ * length(gravity) * dt;
   expected_.resize(count);
+  seen_.resize(count);
   stirred_.clear();
   way_.resize(count);
   for (int b = 0; b < count; ++b) {
@@ -53,7 +49,11 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const bool moves = bodies.there[b] && bodies.moves(b);
     const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
     const double room = moves ? fall + kStray * bodies.extent[b].thinnest : 0;
-    expected_[b] = {v.x, v.y, v.turn, room, moves ? room : kNoBound, bodies.extent[b].turningReach};
+    const Extent& extent = bodies.extent[b];
+    expected_[b] = {v.x, v.y, v.turn, room, moves ? room : kNoBound, extent.turningReach};
+    const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
+    seen_[b] = {bodies.position[b],  v.linear(), v.turn, bodies.angleRad[b], extent.thinnest,
+                extent.turningReach, room,       bodies.surface[b].bounce > 0, isMoving && !bodies.moves(b)};
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
@@ -65,10 +65,11 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   due_.clear();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     BodyPair& pair = pairs[k];
-    if (movesFast(bodies, pair.key, slow, dt)) {
+    const Seen &a = seen_[pair.key.a], &b = seen_[pair.key.b];
+    if (movesFast(a, b, slow, dt)) {
       livelyPair_[k] = 1;
       makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
-    } else if (!mayKeep(bodies, pair, broad.shiftOf(pair.key), dt)) {
+    } else if (!mayKeep(a, b, pair, broad.shiftOf(pair.key), dt)) {
       due_.push_back(static_cast<int>(k));
     }
   }
@@ -100,28 +101,26 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   dropped_.assign(calm_.size(), 0);
 }
 
-bool NarrowPhase::movesFast(const Bodies& bodies, const PairKey& key, double slow, double dt) const {
-  const int a = key.a, b = key.b;
-  const double thin = thinner(bodies, a, b);
-  const double way = relativeSpeed(bodies, a, b) * dt;
-  const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
-  const double turn = std::max(std::abs(bodies.velocity[a].turn), std::abs(bodies.velocity[b].turn)) * dt;
-  const bool pushed =
-      (!bodies.moves(a) && isMoving(bodies, a)) || (!bodies.moves(b) && isMoving(bodies, b));
-  return (pushed && way > kReuse * thin) ||
+double NarrowPhase::relativeWay(const Seen& a, const Seen& b, double dt) {
+  return (length(a.velocity - b.velocity) + std::abs(a.turn) * a.turningReach +
+          std::abs(b.turn) * b.turningReach) * dt;
+}
+
+bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double slow, double dt) {
+  const double thin = std::min(a.thinnest, b.thinnest), way = relativeWay(a, b, dt);
+  const bool bounces = a.bounces || b.bounces;
+  const double turn = std::max(std::abs(a.turn), std::abs(b.turn)) * dt;
+  return ((a.pushes || b.pushes) && way > kReuse * thin) ||
          way > (bounces ? std::clamp(slow, kCalmBouncing * thin, kCalm * thin) : kCalm * thin) ||
          (way > kCalmTurning * thin && turn > kCalmTurn);
 }
 
-bool NarrowPhase::mayKeep(const Bodies& bodies, BodyPair& pair, Vec2 shift, double dt) const {
-  const int a = pair.key.a, b = pair.key.b;
-  const double thin = thinner(bodies, a, b);
-  const double margin = relativeSpeed(bodies, a, b) * dt + expected_[a].room + expected_[b].room;
-  const Vec2 between = bodies.position[b] + shift - bodies.position[a];
-  const double turnedA = std::abs(bodies.angleRad[a] - pair.angleA),
-               turnedB = std::abs(bodies.angleRad[b] - pair.angleB);
-  const double since = length(between - pair.between) + turnedA * bodies.extent[a].turningReach +
-                       turnedB * bodies.extent[b].turningReach;
+bool NarrowPhase::mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double dt) const {
+  const double thin = std::min(a.thinnest, b.thinnest);
+  const double margin = relativeWay(a, b, dt) + a.room + b.room;
+  const Vec2 between = b.position + shift - a.position;
+  const double turnedA = std::abs(a.angleRad - pair.angleA), turnedB = std::abs(b.angleRad - pair.angleB);
+  const double since = length(between - pair.between) + turnedA * a.turningReach + turnedB * b.turningReach;
   auto follows = [&] {
     const auto begin = memory_.begin() + pair.first;
     return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
@@ -131,8 +130,8 @@ bool NarrowPhase::mayKeep(const Bodies& bodies, BodyPair& pair, Vec2 shift, doub
   if ((pair.apart || same) && margin + since <= pair.margin) return true;
   pair.margin = margin + 2 * kReuseFollowing * thin;
   pair.between = between;
-  pair.angleA = bodies.angleRad[a];
-  pair.angleB = bodies.angleRad[b];
+  pair.angleA = a.angleRad;
+  pair.angleB = b.angleRad;
   return false;
 }
 

@@ -74,10 +74,20 @@ class NarrowPhase {
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
+  /// What is asked of a body at the step's start for each of its pairs, side by side.
+  struct Seen {
+    Vec2 position, velocity;
+    double turn = 0, angleRad = 0;
+    double thinnest = 0, turningReach = 0;
+    double room = 0;  // as Expected's
+    bool bounces = false;
+    bool pushes = false;  // moves, and nothing moves it
+  };
+  static double relativeWay(const Seen& a, const Seen& b, double dt);
   /// Do the bodies of a pair move too much in a step for what was found at its start?
-  bool movesFast(const Bodies& bodies, const PairKey& key, double slow, double dt) const;
+  static bool movesFast(const Seen& a, const Seen& b, double slow, double dt);
   /// Do the contacts of the last step still hold? If not: notes for which places they are found now.
-  bool mayKeep(const Bodies& bodies, BodyPair& pair, Vec2 shift, double dt) const;
+  bool mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double dt) const;
   /// Is a lively pair to be looked at in this sub-step?
   bool isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, double h);
   void dropContacts(const LivelyPair& pair);
@@ -90,6 +100,7 @@ class NarrowPhase {
   std::vector<LivelyPair> pairs_;
   std::size_t refreshed_ = 0;  // so many of them have been looked at in this sub-step
   std::vector<Expected> expected_;
+  std::vector<Seen> seen_;
   std::vector<int> stirred_;
   std::vector<Motion> way_;  // of those that leave theirs
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs
