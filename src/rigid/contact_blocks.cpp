@@ -22,10 +22,14 @@ constexpr int kKinds = 4;
 constexpr double kSpare = 4;
 
 typedef double Four __attribute__((vector_size(32)));
+constexpr int kNumbers = 4;  // of a Motion
 
-/// Bodies' motions, two in a row.
+static_assert(sizeof(Motion) == sizeof(Four));
+/// Bodies' motions, two in a row; `at` counts numbers, not bodies: that needs no multiplication.
 inline Lanes rows(const Motion* from, int low, int high) {
-  const Four a = *reinterpret_cast<const Four*>(from + low), b = *reinterpret_cast<const Four*>(from + high);
+  const double* numbers = &from->x;
+  const Four a = *reinterpret_cast<const Four*>(numbers + low),
+             b = *reinterpret_cast<const Four*>(numbers + high);
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
@@ -43,12 +47,11 @@ inline Motions gather(const Motion* from, const int* index) {
           __builtin_shufflevector(xt, xtAfter, 2, 3, 6, 7, 10, 11, 14, 15)};
 }
 
-inline void storeRow(Motion* to, Four row) { *reinterpret_cast<Four*>(to) = row; }
 inline Four low(Lanes a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
 inline Four high(Lanes a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
 
-/// Lanes whose bit is not set are left alone: their body does not move, and may be in several lanes.
-inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motions& m) {
+/// A body that does not move may be in several lanes: each gives back what it was.
+inline void scatter(Motion* to, const int* index, const Motions& m) {
   const Lanes xyEven = __builtin_shufflevector(m.x, m.y, 0, 8, 2, 10, 4, 12, 6, 14),
               xyOdd = __builtin_shufflevector(m.x, m.y, 1, 9, 3, 11, 5, 13, 7, 15);
   const Lanes zero{};
@@ -58,14 +61,15 @@ inline void scatter(Motion* to, const int* index, std::uint8_t bits, const Motio
               r46 = __builtin_shufflevector(xyEven, turnEven, 4, 5, 12, 13, 6, 7, 14, 15);
   const Lanes r13 = __builtin_shufflevector(xyOdd, turnOdd, 0, 1, 8, 9, 2, 3, 10, 11),
               r57 = __builtin_shufflevector(xyOdd, turnOdd, 4, 5, 12, 13, 6, 7, 14, 15);
-  if (bits & 1) storeRow(to + index[0], low(r02));
-  if (bits & 2) storeRow(to + index[1], low(r13));
-  if (bits & 4) storeRow(to + index[2], high(r02));
-  if (bits & 8) storeRow(to + index[3], high(r13));
-  if (bits & 16) storeRow(to + index[4], low(r46));
-  if (bits & 32) storeRow(to + index[5], low(r57));
-  if (bits & 64) storeRow(to + index[6], high(r46));
-  if (bits & 128) storeRow(to + index[7], high(r57));
+  auto storeRow = [&](int at, Four row) { *reinterpret_cast<Four*>(&to->x + at) = row; };
+  storeRow(index[0], low(r02));
+  storeRow(index[1], low(r13));
+  storeRow(index[2], high(r02));
+  storeRow(index[3], high(r13));
+  storeRow(index[4], low(r46));
+  storeRow(index[5], low(r57));
+  storeRow(index[6], high(r46));
+  storeRow(index[7], high(r57));
 }
 
 template <class Short>
@@ -164,12 +168,10 @@ void ContactBlocks::fill(Block& block, const Bodies& bodies, const std::vector<C
     block.contact[l] = which[l];
     if (which[l] < 0) continue;
     const Contact& c = contacts[which[l]];
-    block.a[l] = c.a;
-    block.b[l] = c.b;
+    block.a[l] = kNumbers * c.a;
+    block.b[l] = kNumbers * c.b;
     block.count = std::max(block.count, c.count);
     const InverseMass &a = bodies.inverse[c.a], &b = bodies.inverse[c.b];
-    if (a.mass > 0) block.storeA |= 1 << l;
-    if (b.mass > 0) block.storeB |= 1 << l;
     block.nx[l] = static_cast<float>(c.normal.x);
     block.ny[l] = static_cast<float>(c.normal.y);
     block.friction[l] = static_cast<float>(c.friction);
@@ -229,8 +231,8 @@ void ContactBlocks::warmStart(Bodies& bodies) const {
       vb.y += wide(block.inverseB) * py;
       vb.turn += wide(block.inertiaB) * (wide(p.armBN) * p.impulseN + wide(p.armBT) * p.impulseT);
     }
-    scatter(velocity, block.a, block.storeA, va);
-    scatter(velocity, block.b, block.storeB, vb);
+    scatter(velocity, block.a, va);
+    scatter(velocity, block.b, vb);
   }
 }
 
@@ -250,8 +252,8 @@ inline void ContactBlocks::separate(const Block& block, const Apart& apart, Moti
     db.y += wide(block.inverseB) * ny * overlap;
     db.turn += wide(block.inertiaB) * armB * overlap;
   }
-  scatter(moved, block.a, block.storeA, da);
-  scatter(moved, block.b, block.storeB, db);
+  scatter(moved, block.a, da);
+  scatter(moved, block.b, db);
 }
 
 template <int kPoints>
@@ -273,8 +275,9 @@ inline double ContactBlocks::solvePoints(Block& block, Bodies& bodies, double pe
 
   // Of b against a; each one's own velocity follows from all the impulses at the end.
   Motions va = gather(velocity, block.a), vb = gather(velocity, block.b);
-  const Lanes inverseA = wide(block.inverseA), inverseB = wide(block.inverseB), inverse = inverseA + inverseB;
+  const Lanes inverseA = wide(block.inverseA), inverseB = wide(block.inverseB);
   const Lanes inertiaA = wide(block.inertiaA), inertiaB = wide(block.inertiaB);
+  const Lanes givenX = (inverseA + inverseB) * nx, givenY = (inverseA + inverseB) * ny;
   Lanes x = vb.x - va.x, y = vb.y - va.y;
   Lanes normal{}, tangential{}, largest{}, least = Lanes{} + 1e300;
   for (int k = 0; k < kPoints; ++k) {
@@ -285,8 +288,8 @@ inline double ContactBlocks::solvePoints(Block& block, Bodies& bodies, double pe
     const Lanes change = total - p.impulseN;
     p.impulseN = total;
     normal += change;
-    x += nx * (inverse * change);
-    y += ny * (inverse * change);
+    x += givenX * change;
+    y += givenY * change;
     va.turn -= inertiaA * armAN * change;
     vb.turn += inertiaB * armBN * change;
     // The change of the velocity: all that was amiss, or less where the contact lets go.
@@ -301,8 +304,8 @@ inline double ContactBlocks::solvePoints(Block& block, Bodies& bodies, double pe
     const Lanes slide = held - p.impulseT;
     p.impulseT = held;
     tangential += slide;
-    x -= ny * (inverse * slide);
-    y += nx * (inverse * slide);
+    x -= givenY * slide;
+    y += givenX * slide;
     va.turn -= inertiaA * armAT * slide;
     vb.turn += inertiaB * armBT * slide;
   }
@@ -313,8 +316,8 @@ inline double ContactBlocks::solvePoints(Block& block, Bodies& bodies, double pe
   vb.y += inverseB * py;
   block.spare = smallestOf(least);
   block.change = largestOf(largest);
-  scatter(velocity, block.a, block.storeA, va);
-  scatter(velocity, block.b, block.storeB, vb);
+  scatter(velocity, block.a, va);
+  scatter(velocity, block.b, vb);
   return block.change;
 }
 

@@ -78,11 +78,10 @@ class ContactBlocks {
     Lanes gap, impulseN, impulseT;
   };
   struct alignas(64) Block {
-    int a[kLanes], b[kLanes];
-    int contact[kLanes];          // -1: empty lane
-    std::uint8_t storeA, storeB;  // bits: the lane's body moves
-    int count;                    // points of its contacts: 1 or 2
-    double change;                // of a relative velocity in the last sweep, m/s
+    int a[kLanes], b[kLanes];  // where the bodies' motions begin, in numbers
+    int contact[kLanes];       // -1: empty lane
+    int count;                 // points of its contacts: 1 or 2
+    double change;             // of a relative velocity in the last sweep, m/s
     double spare;  // all parted faster than they need by so much in the last sweep, m/s; 0: none
     ShortLanes nx, ny, friction;
     ShortLanes inverseA, inertiaA, inverseB, inertiaB;
