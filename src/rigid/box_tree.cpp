@@ -10,7 +10,7 @@ void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items
   items_ = items;
   nodes_.clear();
   if (items.empty()) return;
-  nodes_.push_back({{}, 0, static_cast<int>(items.size())});
+  nodes_.push_back({{}, 0, static_cast<int>(items.size()), -1});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int first = nodes_[n].first, count = nodes_[n].count;
     if (count <= kLeaf) continue;
@@ -34,21 +34,39 @@ void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items
       });
     nodes_[n].first = static_cast<int>(nodes_.size());
     nodes_[n].count = 0;
-    nodes_.push_back({{}, first, half});
-    nodes_.push_back({{}, first + half, count - half});
+    nodes_.push_back({{}, first, half, static_cast<int>(n)});
+    nodes_.push_back({{}, first + half, count - half, static_cast<int>(n)});
   }
+  place_.resize(boxes.size());
+  leaf_.resize(boxes.size());
+  for (std::size_t n = 0; n < nodes_.size(); ++n)
+    for (int k = nodes_[n].first; k < nodes_[n].first + nodes_[n].count; ++k) {
+      place_[items_[k]] = k;
+      leaf_[items_[k]] = static_cast<int>(n);
+    }
   refit(boxes);
 }
 
-Box BoxTree::boxOf(const std::vector<Box>& boxes, const Node& node) const {
+Box BoxTree::boxOf(const Node& node) const {
   if (node.count == 0) return joined(nodes_[node.first].box, nodes_[node.first + 1].box);
-  Box box = boxes[items_[node.first]];
-  for (int k = node.first + 1; k < node.first + node.count; ++k) box = joined(box, boxes[items_[k]]);
+  Box box = boxes_[node.first];
+  for (int k = node.first + 1; k < node.first + node.count; ++k) box = joined(box, boxes_[k]);
   return box;
 }
 
 void BoxTree::refit(const std::vector<Box>& boxes) {
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) node->box = boxOf(boxes, *node);
+  boxes_.resize(items_.size());
+  for (std::size_t k = 0; k < items_.size(); ++k) boxes_[k] = boxes[items_[k]];
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) node->box = boxOf(*node);
+}
+
+void BoxTree::refit(const std::vector<Box>& boxes, int item) {
+  boxes_[place_[item]] = boxes[item];
+  for (int n = leaf_[item]; n >= 0; n = nodes_[n].parent) {
+    const Box was = nodes_[n].box;
+    nodes_[n].box = boxOf(nodes_[n]);
+    if (nodes_[n].box.holds(was) && was.holds(nodes_[n].box)) return;
+  }
 }
 
 }  // namespace smokebox

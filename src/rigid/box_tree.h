@@ -1,5 +1,5 @@
 // A tree of boxes over items, for questions such as "which boxes meet this one": built top-down by medians
-// (O(n log n)), refitted in O(n) when boxes have changed a little.
+// (O(n log n)), refitted in O(n) when boxes have changed a little, in O(log n) for each one when few have.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -31,10 +31,12 @@ class BoxTree {
   /// Over the items whose numbers are listed.
   void build(const std::vector<Box>& boxes, const std::vector<int>& items);
   void refit(const std::vector<Box>& boxes);
+  /// The same where only that item's box has changed.
+  void refit(const std::vector<Box>& boxes, int item);
 
   /// Calls visit(item) for every item whose box meets `box`.
   template <class Visit>
-  void query(const std::vector<Box>& boxes, const Box& box, Visit&& visit) const {
+  void query(const Box& box, Visit&& visit) const {
     if (nodes_.empty()) return;
     int stack[96];
     int top = 0;
@@ -44,7 +46,7 @@ class BoxTree {
       if (!node.box.meets(box)) continue;
       if (node.count > 0) {
         for (int k = node.first; k < node.first + node.count; ++k)
-          if (boxes[items_[k]].meets(box)) visit(items_[k]);
+          if (boxes_[k].meets(box)) visit(items_[k]);
       } else {
         stack[top++] = node.first;
         stack[top++] = node.first + 1;
@@ -57,11 +59,14 @@ class BoxTree {
     Box box;
     int first = 0;  // the first of two children, or of `count` items
     int count = 0;  // 0: an inner node
+    int parent = -1;
   };
-  Box boxOf(const std::vector<Box>& boxes, const Node& node) const;
+  Box boxOf(const Node& node) const;
 
   std::vector<Node> nodes_;  // children come after their parent
   std::vector<int> items_;
+  std::vector<Box> boxes_;          // of items_
+  std::vector<int> place_, leaf_;  // by item: in items_; node
 };
 
 }  // namespace smokebox

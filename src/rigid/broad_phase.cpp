@@ -8,6 +8,10 @@ namespace smokebox {
 namespace {
 constexpr double kRoom = 0.1;  // of a fat box around what it has to hold, in reaches of the body
 constexpr double kStepsAhead = 3;
+// The tree is built anew when boxes have been fitted so many times each.
+constexpr long kRebuild = 2;
+// Boxes of so many times fewer bodies than there are, are fitted into the tree one by one.
+constexpr long kFewer = 16;
 
 bool mayMeet(const Bodies& bodies, int a, int b) {
   if (!bodies.moves(a) && !bodies.moves(b)) return false;
@@ -61,7 +65,7 @@ void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& fo
       // The other one's image at +shift meets this body where the other one meets this body's image at
       // -shift.
       const Box box = shifted(fat_[body], {-sx * walls_.width, -sy * walls_.height});
-      tree_.query(fat_, box, [&](int other) {
+      tree_.query(box, [&](int other) {
         if (other == body || !mayMeet(bodies, body, other)) return;
         if (body < other)
           found.push_back({body, other, static_cast<std::int8_t>(sx), static_cast<std::int8_t>(sy)});
@@ -69,6 +73,12 @@ void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& fo
           found.push_back({other, body, static_cast<std::int8_t>(-sx), static_cast<std::int8_t>(-sy)});
       });
     }
+}
+
+void BroadPhase::refitTree(long moved) {
+  if (kFewer * moved > static_cast<long>(fat_.size())) return tree_.refit(fat_);
+  for (std::size_t b = 0; b < fat_.size(); ++b)
+    if (refitted_[b]) tree_.refit(fat_, static_cast<int>(b));
 }
 
 void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
@@ -92,14 +102,14 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
     listChanged |= !was;
   }
   sinceBuild_ += moved;
-  if (listChanged || 4 * sinceBuild_ > count) {
+  if (listChanged || sinceBuild_ > kRebuild * count) {
     items_.clear();
     for (int b = 0; b < count; ++b)
       if (listed_[b]) items_.push_back(b);
     tree_.build(fat_, items_);
     sinceBuild_ = 0;
   } else if (moved > 0) {
-    tree_.refit(fat_);
+    refitTree(moved);
   } else if (late_.empty()) {
     return;
   }
@@ -134,7 +144,8 @@ void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, con
   bool any = false;
   for (const int b : which) any |= (refitted_[b] = fit(bodies, b, gravity, dt, way[b].linear()));
   if (any) {
-    tree_.refit(fat_);
+    for (const int b : which)
+      if (refitted_[b]) tree_.refit(fat_, b);
     for (const int b : which)
       if (refitted_[b]) search(bodies, b, found_);
     sinceBuild_ += static_cast<long>(which.size());

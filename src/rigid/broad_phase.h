@@ -50,6 +50,7 @@ class BroadPhase {
 
  private:
   bool fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Vec2 later = {});
+  void refitTree(long moved);
   void search(const Bodies& bodies, int body, std::vector<PairKey>& found) const;
 
   RigidWalls walls_;
