@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "rigid/contact_sweeps.h"
+#include "rigid/lanes.h"
 
 namespace smokebox {
 
@@ -31,6 +32,7 @@ constexpr double kAhead = 4;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
+inline Lanes absolute(Lanes a) { return a < 0 ? -a : a; }
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -50,7 +52,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
     const double room = moves ? fall + kStray * bodies.extent[b].thinnest : 0;
     const Extent& extent = bodies.extent[b];
-    expected_[b] = {v.x, v.y, v.turn, room, moves ? room : kNoBound, extent.turningReach};
+    expected_[b] = {v, room, moves ? room : kNoBound, extent.turningReach};
     const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
     seen_[b] = {bodies.position[b],  v.linear(), v.turn, bodies.angleRad[b], extent.thinnest,
                 extent.turningReach, room,       bodies.surface[b].bounce > 0, isMoving && !bodies.moves(b)};
@@ -279,7 +281,6 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
                                     Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
   leaving_.clear();
   turned_.clear();
-  const double t = elapsed_ + h_;
   auto wayOf = [&](int b) -> Motion {
     const Motion &v = bodies.velocity[b], by = struck ? (*struck)[b] : Motion{};
     return {by.x + h_ * v.x, by.y + h_ * v.y, by.turn + h_ * v.turn};
@@ -289,34 +290,34 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
   for (const int b : stirred_) {
     const Motion& v = bodies.velocity[b];
     Expected& e = expected_[b];
-    const Vec2 changed{v.x - e.x, v.y - e.y};
+    const Vec2 changed = v.linear() - e.velocity.linear();
     const double slack = 0.5 * e.room / timeLeft;
     if (dot(changed, changed) <= slack * slack) continue;
     now |= length(changed) * h_ > 0.5 * e.room;
-    e.x = v.x;
-    e.y = v.y;
+    e.velocity = v;
     turned_.push_back(b);
   }
   const double later = timeLeft > 1.5 * h_ ? 1 : 0;
+  const double h = h_, elapsed = elapsed_;
   for (int b = 0; b < bodies.count(); ++b) {
     const Expected& e = expected_[b];
-    const Motion &m = bodies.moved[b], w = wayOf(b);
-    auto leaves = [&](double x, double y, double turned) {
-      const double left = e.limit - std::abs(turned) * e.reach;
-      return left < 0 || x * x + y * y > left * left;
+    Lanes on = h * load(&bodies.velocity[b].x) - h * load(&e.velocity.x);
+    if (struck) on += load(&(*struck)[b].x);
+    const Lanes off = load(&bodies.moved[b].x) + on - elapsed * load(&e.velocity.x), then = off + later * on;
+    // Most are far from leaving, which the sum of what they are off along each axis tells.
+    const Lanes a = absolute(off), c = absolute(then), most = a > c ? a : c;
+    if (most[0] + most[1] + most[2] * e.reach <= e.limit) continue;
+    auto leaves = [&](Lanes by) {
+      const double left = e.limit - std::abs(by[2]) * e.reach;
+      return left < 0 || by[0] * by[0] + by[1] * by[1] > left * left;
     };
-    const double x = m.x + w.x - t * e.x, y = m.y + w.y - t * e.y, turn = m.turn + w.turn - t * e.turn;
-    const bool leavesNow = leaves(x, y, turn);
-    if (!leavesNow && !leaves(x + later * (w.x - h_ * e.x), y + later * (w.y - h_ * e.y),
-                              turn + later * (w.turn - h_ * e.turn)))
-      continue;
+    const bool leavesNow = leaves(off);
+    if (!leavesNow && !leaves(then)) continue;
     now |= leavesNow;
     leaving_.push_back(b);
   }
   for (const int b : leaving_) {
-    const Motion& v = bodies.velocity[b];
-    expected_[b].x = v.x;
-    expected_[b].y = v.y;
+    expected_[b].velocity = bodies.velocity[b];
     expected_[b].limit = kNoBound;
     stirred_.push_back(b);
   }

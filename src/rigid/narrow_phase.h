@@ -66,10 +66,10 @@ class NarrowPhase {
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
   struct Expected {
-    double x = 0, y = 0, turn = 0;  // velocity at the step's start, m/s and rad/s
-    double room = 0;                // how far its points may be from where that takes them, m
-    double limit = 0;               // the same while its pairs are calm and may be stirred, else without bound
-    double reach = 0;               // how far a turn moves its points, m/rad
+    Motion velocity;   // at the step's start
+    double room = 0;   // how far its points may be from where that takes them, m
+    double limit = 0;  // the same while its pairs are calm and may be stirred, else without bound
+    double reach = 0;  // how far a turn moves its points, m/rad
   };
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair);
