@@ -66,7 +66,8 @@ void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& fo
       // -shift.
       const Box box = shifted(fat_[body], {-sx * walls_.width, -sy * walls_.height});
       tree_.query(box, [&](int other) {
-        if (other == body || !mayMeet(bodies, body, other)) return;
+        if (other == body || (refitted_[other] && other < body)) return;  // that one finds this one
+        if (!mayMeet(bodies, body, other)) return;
         if (body < other)
           found.push_back({body, other, static_cast<std::int8_t>(sx), static_cast<std::int8_t>(sy)});
         else
@@ -111,6 +112,7 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
   } else if (moved > 0) {
     refitTree(moved);
   } else if (late_.empty()) {
+    refitted_.assign(count, 0);
     return;
   }
 
@@ -136,6 +138,7 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
   }
   for (; fresh != found_.end(); ++fresh) merged_.push_back({*fresh});
   pairs_.swap(merged_);
+  refitted_.assign(count, 0);
 }
 
 void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, const std::vector<Motion>& way,
@@ -149,6 +152,7 @@ void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, con
     for (const int b : which)
       if (refitted_[b]) search(bodies, b, found_);
     sinceBuild_ += static_cast<long>(which.size());
+    for (const int b : which) refitted_[b] = 0;
   }
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
