@@ -20,13 +20,31 @@ void eachImpulse(ContactBlocks& blocks, std::vector<Contact>& spare, std::vector
 
 }  // namespace
 
+void ConjugateSweeps::list(const Bodies& bodies, const ContactBlocks& blocks,
+                           const std::vector<Contact>& spare, const std::vector<Contact>& lively) {
+  isListed_.assign(bodies.count(), 0);
+  auto add = [&](int body) {
+    if (isListed_[body] || !bodies.moves(body)) return;
+    isListed_[body] = 1;
+    bodies_.push_back(body);
+  };
+  blocks.eachBody(add);
+  for (const std::vector<Contact>* contacts : {&spare, &lively})
+    for (const Contact& contact : *contacts) {
+      add(contact.a);
+      add(contact.b);
+    }
+}
+
 void ConjugateSweeps::remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
                                std::vector<Contact>& lively) {
+  if (bodies_.empty()) list(bodies, blocks, spare, lively);
   impulses_.clear();
   eachImpulse(blocks, spare, lively, [&](const double* impulse, const auto*, int count) {
     impulses_.insert(impulses_.end(), impulse, impulse + count);
   });
-  velocities_ = bodies.velocity;
+  velocities_.clear();
+  for (const int b : bodies_) velocities_.push_back(bodies.velocity[b]);
 }
 
 void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
@@ -56,9 +74,9 @@ void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::ve
       direction_[at] = more + change;
     }
   });
-  for (std::size_t b = 0; b < velocities_.size(); ++b) {
-    Motion &v = bodies.velocity[b], &turned = turnedTo_[b];
-    const Motion& was = velocities_[b];
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    Motion &v = bodies.velocity[bodies_[k]], &turned = turnedTo_[k];
+    const Motion& was = velocities_[k];
     const Motion change{v.x - was.x, v.y - was.y, v.turn - was.turn};
     const Motion more{share * turned.x, share * turned.y, share * turned.turn};
     v.x += more.x;

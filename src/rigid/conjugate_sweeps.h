@@ -14,7 +14,10 @@ namespace smokebox {
 class ConjugateSweeps {
  public:
   /// Forgets the direction: other contacts come.
-  void restart() { known_ = false; }
+  void restart() {
+    known_ = false;
+    bodies_.clear();
+  }
   /// Before a sweep.
   void remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
                 std::vector<Contact>& lively);
@@ -23,10 +26,15 @@ class ConjugateSweeps {
                    std::vector<Contact>& lively);
 
  private:
+  void list(const Bodies& bodies, const ContactBlocks& blocks, const std::vector<Contact>& spare,
+            const std::vector<Contact>& lively);
+
   bool known_ = false;  // there is a direction
   double size_ = 0;     // of the last gradient, J
   std::vector<double> impulses_, direction_;
-  std::vector<Motion> velocities_, turnedTo_;  // turnedTo_: the direction's velocities
+  std::vector<int> bodies_;  // that have contacts
+  std::vector<char> isListed_;
+  std::vector<Motion> velocities_, turnedTo_;  // of those; turnedTo_: the direction's velocities
 };
 
 }  // namespace smokebox

@@ -22,9 +22,8 @@ constexpr int kKinds = 4;
 constexpr double kSpare = 4;
 
 typedef double Four __attribute__((vector_size(32)));
-constexpr int kNumbers = 4;  // of a Motion
 
-static_assert(sizeof(Motion) == sizeof(Four));
+static_assert(sizeof(Motion) == ContactBlocks::kNumbers * sizeof(double));
 /// Bodies' motions, two in a row; `at` counts numbers, not bodies: that needs no multiplication.
 inline Lanes rows(const Motion* from, int low, int high) {
   const double* numbers = &from->x;

@@ -16,6 +16,7 @@ namespace smokebox {
 class ContactBlocks {
  public:
   static constexpr int kLanes = 8;
+  static constexpr int kNumbers = 4;  // in a Motion
   typedef double Lanes __attribute__((vector_size(64)));
   typedef float ShortLanes __attribute__((vector_size(32)));
   struct Motions {
@@ -59,6 +60,16 @@ class ContactBlocks {
         visit(reinterpret_cast<double*>(&p.impulseT), reinterpret_cast<const float*>(&p.massT), kLanes);
       }
     }
+  }
+  /// visit(body) for the bodies of all contacts, some more than once.
+  template <class Visit>
+  void eachBody(Visit&& visit) const {
+    for (const Block& block : blocks_)
+      for (int l = 0; l < kLanes; ++l) {
+        if (block.contact[l] < 0) continue;
+        visit(block.a[l] / kNumbers);
+        visit(block.b[l] / kNumbers);
+      }
   }
   std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
 
