@@ -60,6 +60,15 @@ void BoxTree::refit(const std::vector<Box>& boxes) {
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) node->box = boxOf(*node);
 }
 
+void BoxTree::markNodes(const std::vector<char>& marked) {
+  marked_.assign(nodes_.size(), 0);
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    const Node& node = nodes_[n];
+    if (node.count == 0) marked_[n] = marked_[node.first] || marked_[node.first + 1];
+    for (int k = node.first; k < node.first + node.count; ++k) marked_[n] |= marked[items_[k]];
+  }
+}
+
 void BoxTree::refit(const std::vector<Box>& boxes, int item) {
   boxes_[place_[item]] = boxes[item];
   for (int n = leaf_[item]; n >= 0; n = nodes_[n].parent) {

@@ -10,6 +10,8 @@ constexpr double kRoom = 0.1;  // of a fat box around what it has to hold, in re
 constexpr double kStepsAhead = 3;
 // The tree is built anew when boxes have been fitted so many times each.
 constexpr long kRebuild = 2;
+// All pairs are searched for together if this share of the bodies, as a divisor, has new boxes.
+constexpr long kFewTimes = 8;
 // Boxes of so many times fewer bodies than there are, are fitted into the tree one by one.
 constexpr long kFewer = 16;
 
@@ -57,11 +59,12 @@ bool BroadPhase::fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Ve
   return true;
 }
 
-void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& found) const {
+void BroadPhase::search(const Bodies& bodies, int body, bool imagesOnly, std::vector<PairKey>& found) const {
   const bool wrapX = walls_.sides[0] == RigidWalls::Kind::periodic,
              wrapY = walls_.sides[2] == RigidWalls::Kind::periodic;
   for (int sy = wrapY ? -1 : 0; sy <= (wrapY ? 1 : 0); ++sy)
     for (int sx = wrapX ? -1 : 0; sx <= (wrapX ? 1 : 0); ++sx) {
+      if (imagesOnly && sx == 0 && sy == 0) continue;
       // The other one's image at +shift meets this body where the other one meets this body's image at
       // -shift.
       const Box box = shifted(fat_[body], {-sx * walls_.width, -sy * walls_.height});
@@ -74,6 +77,16 @@ void BroadPhase::search(const Bodies& bodies, int body, std::vector<PairKey>& fo
           found.push_back({other, body, static_cast<std::int8_t>(-sx), static_cast<std::int8_t>(-sy)});
       });
     }
+}
+
+void BroadPhase::searchAll(const Bodies& bodies, long moved, std::vector<PairKey>& found) {
+  const bool together = kFewTimes * moved > bodies.count();
+  if (together)
+    tree_.eachPair(refitted_, [&](int a, int b) {
+      if (mayMeet(bodies, a, b)) found.push_back({std::min(a, b), std::max(a, b)});
+    });
+  for (int b = 0; b < bodies.count(); ++b)
+    if (refitted_[b] && listed_[b]) search(bodies, b, together, found);
 }
 
 void BroadPhase::refitTree(long moved) {
@@ -118,8 +131,7 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
 
   found_.assign(late_.begin(), late_.end());
   late_.clear();
-  for (int b = 0; b < count; ++b)
-    if (refitted_[b] && listed_[b]) search(bodies, b, found_);
+  searchAll(bodies, moved, found_);
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
 
@@ -150,7 +162,7 @@ void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, con
     for (const int b : which)
       if (refitted_[b]) tree_.refit(fat_, b);
     for (const int b : which)
-      if (refitted_[b]) search(bodies, b, found_);
+      if (refitted_[b]) search(bodies, b, false, found_);
     sinceBuild_ += static_cast<long>(which.size());
     for (const int b : which) refitted_[b] = 0;
   }

@@ -51,7 +51,8 @@ class BroadPhase {
  private:
   bool fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Vec2 later = {});
   void refitTree(long moved);
-  void search(const Bodies& bodies, int body, std::vector<PairKey>& found) const;
+  void search(const Bodies& bodies, int body, bool imagesOnly, std::vector<PairKey>& found) const;
+  void searchAll(const Bodies& bodies, long moved, std::vector<PairKey>& found);
 
   RigidWalls walls_;
   std::vector<Box> fat_;
