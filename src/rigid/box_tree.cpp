@@ -4,13 +4,16 @@ namespace smokebox {
 
 namespace {
 constexpr int kLeaf = 4;  // items
+// Larger than so many times the median is large, unless there are more than so many.
+constexpr double kLarge = 16;
+constexpr std::size_t kMostLarge = 16;
 }
 
 void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items) {
   items_ = items;
   nodes_.clear();
-  if (items.empty()) return;
-  nodes_.push_back({{}, 0, static_cast<int>(items.size()), -1});
+  setLargeApart(boxes);
+  if (small_ > 0) nodes_.push_back({{}, 0, static_cast<int>(small_), -1});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int first = nodes_[n].first, count = nodes_[n].count;
     if (count <= kLeaf) continue;
@@ -38,13 +41,28 @@ void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items
     nodes_.push_back({{}, first + half, count - half, static_cast<int>(n)});
   }
   place_.resize(boxes.size());
-  leaf_.resize(boxes.size());
+  leaf_.assign(boxes.size(), -1);
+  for (std::size_t k = small_; k < items_.size(); ++k) place_[items_[k]] = static_cast<int>(k);
   for (std::size_t n = 0; n < nodes_.size(); ++n)
     for (int k = nodes_[n].first; k < nodes_[n].first + nodes_[n].count; ++k) {
       place_[items_[k]] = k;
       leaf_[items_[k]] = static_cast<int>(n);
     }
   refit(boxes);
+}
+
+void BoxTree::setLargeApart(const std::vector<Box>& boxes) {
+  small_ = items_.size();
+  if (items_.empty()) return;
+  sizes_.clear();
+  for (const int item : items_) sizes_.push_back(sizeOf(boxes[item]));
+  const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
+  std::nth_element(sizes_.begin(), middle, sizes_.end());
+  const double limit = kLarge * *middle;
+  const auto large = std::partition(items_.begin(), items_.end(),
+                                           [&](int item) { return sizeOf(boxes[item]) <= limit; });
+  if (static_cast<std::size_t>(items_.end() - large) <= kMostLarge)
+    small_ = static_cast<std::size_t>(large - items_.begin());
 }
 
 Box BoxTree::boxOf(const Node& node) const {

@@ -1,5 +1,6 @@
 // A tree of boxes over items, for questions such as "which boxes meet this one": built top-down by medians
-// (O(n log n)), refitted in O(n) when boxes have changed a little, in O(log n) for each one when few have.
+// (O(n log n)), refitted in O(n) when boxes have changed a little, in O(log n) for each one when few have. A few
+// boxes far larger than most (walls) would widen every node above them: they are kept beside the tree.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -38,6 +39,8 @@ class BoxTree {
   /// Calls visit(item) for every item whose box meets `box`.
   template <class Visit>
   void query(const Box& box, Visit&& visit) const {
+    for (std::size_t k = small_; k < items_.size(); ++k)
+      if (boxes_[k].meets(box)) visit(items_[k]);
     if (nodes_.empty()) return;
     int stack[96];
     int top = 0;
@@ -59,12 +62,15 @@ class BoxTree {
   /// of a pair of nodes are descended together, which costs far less than a query for each item.
   template <class Visit>
   void eachPair(const std::vector<char>& marked, Visit&& visit) {
+    auto meet = [&](std::size_t k, std::size_t l) {
+      if (!boxes_[k].meets(boxes_[l])) return;
+      const int a = items_[k], b = items_[l];
+      if (marked[a] || marked[b]) visit(a, b);
+    };
+    for (std::size_t large = small_; large < items_.size(); ++large)
+      for (std::size_t k = 0; k < large; ++k) meet(k, large);
     if (nodes_.empty()) return;
     markNodes(marked);
-    auto meet = [&](int k, int l) {
-      const int a = items_[k], b = items_[l];
-      if ((marked[a] || marked[b]) && boxes_[k].meets(boxes_[l])) visit(a, b);
-    };
     pairs_.assign(1, {0, 0});
     while (!pairs_.empty()) {
       const auto [i, j] = pairs_.back();
@@ -103,12 +109,16 @@ class BoxTree {
   };
   static double sizeOf(const Box& box) { return box.high.x - box.low.x + box.high.y - box.low.y; }
   Box boxOf(const Node& node) const;
+  /// Moves what is large to the end of items_.
+  void setLargeApart(const std::vector<Box>& boxes);
   void markNodes(const std::vector<char>& marked);
 
   std::vector<Node> nodes_;  // children come after their parent
   std::vector<int> items_;
+  std::size_t small_ = 0;  // so many of them are in the tree
+  std::vector<double> sizes_;
   std::vector<Box> boxes_;          // of items_
-  std::vector<int> place_, leaf_;  // by item: in items_; node
+  std::vector<int> place_, leaf_;  // by item: in items_; node, -1 beside the tree
   std::vector<char> marked_;        // by node: an item in it is
   std::vector<std::pair<int, int>> pairs_;  // of nodes, still to be looked at
 };
