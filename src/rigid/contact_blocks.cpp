@@ -20,6 +20,10 @@ constexpr int kFew = 12;
 constexpr int kKinds = 4;
 // A block that parted faster than it needs by so many times what the last sweep changed is left out.
 constexpr double kSpare = 4;
+// More points than so many are swept but once in a sub-step, and each one gives more than it is asked for
+// (successive over-relaxation): in the bins that were tried, the overlap is then as with two plain sweeps.
+constexpr long kMany = 12000;
+constexpr float kOverRelaxed = 1.3F;
 
 typedef double Four __attribute__((vector_size(32)));
 
@@ -154,7 +158,15 @@ void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& cont
     fill(blocks_[k], bodies, contacts, inLane_.data() + kLanes * k);
     points_ += kLanes * blocks_[k].count;
   }
+  if (!areMany()) return;
+  for (Block& block : blocks_)
+    for (Point& p : block.points) {
+      p.massN *= kOverRelaxed;
+      p.massT *= kOverRelaxed;
+    }
 }
+
+bool ContactBlocks::areMany() const { return points_ > kMany; }
 
 void ContactBlocks::fill(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts,
                          const int* which) {

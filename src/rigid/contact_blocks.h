@@ -30,6 +30,9 @@ class ContactBlocks {
   /// Points that a sweep solves, empty lanes too.
   long points() const { return points_; }
 
+  /// So many that one sweep in a sub-step has to do.
+  bool areMany() const;
+
   /// Adds the impulses to the velocities.
   void warmStart(Bodies& bodies) const;
   /// Who overlaps by more than `slop` metres is moved apart by a share of that, at most `most` metres.
@@ -85,7 +88,7 @@ class ContactBlocks {
   // same impulse, so momentum is kept to rounding whatever the normal's.
   struct Point {
     ShortLanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
-    ShortLanes massN, massT;
+    ShortLanes massN, massT;  // over-relaxed where there are many
     Lanes gap, impulseN, impulseT;
   };
   struct alignas(64) Block {

@@ -10,9 +10,8 @@
 namespace smokebox {
 
 namespace {
-// A sub-step has more than two sweeps while it solves fewer points than this, and more than one while there
-// are fewer than the second number.
-constexpr long kManySweeps = 6000, kManySweepsOfFew = 10000, kTwoSweeps = 30000;
+// A sub-step has more than two sweeps while it solves fewer points than this.
+constexpr long kManySweeps = 6000, kManySweepsOfFew = 10000;
 // Sweeps end when no relative velocity changes by more than this share of what gravity adds in a sub-step.
 constexpr double kSettled = 1e-3;
 // ... or by this share of what the first sweep changed beyond that: of impacts.
@@ -166,7 +165,7 @@ void RigidSystem::State::solveContacts(double h) {
         settled =
             std::max(settled, care * std::min(kSettledShare, 1e-6 * work) * (change - h * length(gravity)));
       if (change <= settled) break;
-      if (left < cost && (sweeps > 1 || work > kTwoSweeps)) {
+      if (left < cost && (sweeps > 1 || blocks.areMany())) {
         sweepRough(h, change);
         break;
       }
