@@ -28,8 +28,9 @@ struct Contact {
   bool struck = false;  // had an impact in this sub-step
   double change = 0;    // of a relative velocity in the last sweep, m/s
   double total = 0;     // N s along the normal in this step, impacts too
-  double response[3] = {0, 0,
-                        0};  // of the points' parting speeds to impulses: 0 to 0, each to the other, 1 to 1
+  /// Of the points' parting speeds to impulses: 0 to 0, each to the other, 1 to 1, and one over the
+  /// determinant; that is 0 where two points are hardly two.
+  double response[4] = {0, 0, 0, 0};
   ContactPoint points[2];
 };
 

@@ -20,11 +20,16 @@ void setMasses(const Bodies& bodies, Contact& contact) {
     p.massT = massAlong(tangent);
     contact.response[2 * k] = p.massN > 0 ? 1 / p.massN : 0;
   }
+  contact.response[3] = 0;
   if (contact.count != 2) return;
   const ContactPoint &p = contact.points[0], &q = contact.points[1];
   const Vec2 n = contact.normal;
   contact.response[1] = a.mass + b.mass + a.inertia * cross(p.armA, n) * cross(q.armA, n) +
                         b.inertia * cross(p.armB, n) * cross(q.armB, n);
+  constexpr double kApart = 1e-6;
+  const double k0 = contact.response[0], k1 = contact.response[1], k2 = contact.response[2];
+  const double det = k0 * k2 - k1 * k1;
+  if (k0 > 0 && k2 > 0 && det > kApart * k0 * k2) contact.response[3] = 1 / det;
 }
 
 double partingSpeed(const Bodies& bodies, const Contact& contact, const ContactPoint& point) {
@@ -51,10 +56,9 @@ void warmStart(Bodies& bodies, const std::vector<Contact>& contacts) {
       pushApart(bodies, contact, contact.points[k], contact.points[k].impulseN, contact.points[k].impulseT);
 }
 
-void solveBoth(const double k[3], const double speed[2], double impulse[2]) {
-  const double det = k[0] * k[2] - k[1] * k[1];
-  impulse[0] = (k[1] * speed[1] - k[2] * speed[0]) / det;
-  impulse[1] = (k[1] * speed[0] - k[0] * speed[1]) / det;
+void solveBoth(const double k[4], const double speed[2], double impulse[2]) {
+  impulse[0] = k[3] * (k[1] * speed[1] - k[2] * speed[0]);
+  impulse[1] = k[3] * (k[1] * speed[0] - k[0] * speed[1]);
   if (impulse[0] >= 0 && impulse[1] >= 0) return;
   impulse[0] = std::max(-speed[0] / k[0], 0.0);
   impulse[1] = 0;
@@ -66,10 +70,7 @@ void solveBoth(const double k[3], const double speed[2], double impulse[2]) {
 namespace {
 
 /// Two points at one place are solved one after the other.
-bool areTwo(const Contact& contact) {
-  const double k0 = contact.response[0], k1 = contact.response[1], k2 = contact.response[2];
-  return contact.count == 2 && k0 > 0 && k2 > 0 && k0 * k2 - k1 * k1 > 1e-6 * k0 * k2;
-}
+bool areTwo(const Contact& contact) { return contact.count == 2 && contact.response[3] > 0; }
 
 }  // namespace
 

@@ -18,9 +18,9 @@ double gapMoved(const Bodies& bodies, const Contact& contact, const ContactPoint
 void pushApart(Bodies& bodies, const Contact& contact, const ContactPoint& point, double normal,
                double tangential);
 /// Both normal impulses of a contact at once: the 2 x 2 linear complementarity problem by its four cases
-/// (Murty; as in Catto's block solver). `k`: response of 0 to 0, of each to the other, of 1 to 1; `speed`:
-/// what each point's parting speed lacks without any impulse.
-void solveBoth(const double k[3], const double speed[2], double impulse[2]);
+/// (Murty; as in Catto's block solver). `k`: the contact's response; `speed`: what each point's parting speed
+/// lacks without any impulse.
+void solveBoth(const double k[4], const double speed[2], double impulse[2]);
 
 void warmStart(Bodies& bodies, const std::vector<Contact>& contacts);
 /// Once before the sweeps of a sub-step: how fast each gap may close.

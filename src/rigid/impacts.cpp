@@ -202,8 +202,9 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   const double k00 = response(struck[0], n, struck[0], n);
   const double k01 = count == 2 ? response(struck[0], n, struck[1], n) : 0;
   const double k11 = count == 2 ? response(struck[1], n, struck[1], n) : 0;
-  if (count == 2 && k00 * k11 - k01 * k01 > 1e-9 * k00 * k11) {  // both at once
-    const double k[3] = {k00, k01, k11};
+  const double det = k00 * k11 - k01 * k01;
+  if (count == 2 && det > 1e-9 * k00 * k11) {  // both at once
+    const double k[4] = {k00, k01, k11, 1 / det};
     const double speed[2] = {keep * approaching(struck[0]), keep * approaching(struck[1])};
     solveBoth(k, speed, normal);
   } else {  // one, or two at one place

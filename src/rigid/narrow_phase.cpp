@@ -214,7 +214,7 @@ void NarrowPhase::refreshNew(const Bodies& bodies, const BroadPhase& broad, doub
         finder_.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h, pair.swept,
                      lively_.data() + pair.first, pair.count, next_, {later, {}, {}});
     pair.clear = !next_.empty() && !pair.swept ? pair.reuse : clear - pair.near;
-    replace(pair);
+    replace(pair, bodies);
   }
 }
 
@@ -252,7 +252,7 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
       finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept,
                    lively_.data() + pair.first, pair.count, next_,
                    {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
-    replace(pair);
+    replace(pair, bodies);
   }
 }
 
@@ -265,8 +265,9 @@ void NarrowPhase::dropContacts(const LivelyPair& pair) {
 }
 
 /// Puts what is in next_ into the place of a pair's contacts, or behind all others.
-void NarrowPhase::replace(LivelyPair& pair) {
+void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
   const int count = static_cast<int>(next_.size());
+  for (Contact& contact : next_) setMasses(bodies, contact);
   dropContacts(pair);
   if (count <= pair.count) {
     std::copy(next_.begin(), next_.end(), lively_.begin() + pair.first);

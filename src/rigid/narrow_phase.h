@@ -72,7 +72,7 @@ class NarrowPhase {
     double reach = 0;  // how far a turn moves its points, m/rad
   };
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
-  void replace(LivelyPair& pair);
+  void replace(LivelyPair& pair, const Bodies& bodies);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
   /// What is asked of a body at the step's start for each of its pairs, side by side.
   struct Seen {

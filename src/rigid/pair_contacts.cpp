@@ -112,7 +112,7 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
       return;
     }
     clear = 0;
-    Contact contact;
+    Contact& contact = found.emplace_back();
     contact.a = key.a;
     contact.b = key.b;
     contact.pieceA = pieces.a;
@@ -137,7 +137,6 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
       p.armA = p.armA + later.time * bodies.velocity[key.a].linear();
       p.armB = p.armB + later.time * bodies.velocity[key.b].linear();
     }
-    setMasses(bodies, contact);
     for (int o = 0; o < oldCount; ++o) {
       const Contact& before = old[o];
       if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
@@ -149,7 +148,6 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
             contact.points[k].impulseT = before.points[l].impulseT;
           }
     }
-    found.push_back(contact);
   };
   const ConvexPiece *onlyA = bodies.extent[key.a].only, *onlyB = bodies.extent[key.b].only;
   if (onlyA && onlyB) {  // meet() looks first whether they are near

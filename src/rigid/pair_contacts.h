@@ -38,7 +38,8 @@ class PairContacts {
     Motion struckA, struckB;
   };
   /// Adds the contacts of a pair whose gap is below `margin`, with the impulses of its `old` ones; `swept`:
-  /// of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any.
+  /// of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any. They
+  /// are without effective masses.
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
               const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
 
