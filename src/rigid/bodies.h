@@ -39,11 +39,11 @@ inline Turn turnedBy(Turn turn, double angleRad) {
 /// What is asked of a body's shape all the time, side by side. A box around all that can be touched, in its
 /// own coordinates; lengths in metres.
 struct Extent {
-  Vec2 centre, half;        // of the box
-  double reach = 0;         // from the centre of mass to the farthest point
-  double turningReach = 0;  // how far from the centre of mass a turn moves anything: 0 for a disk
-  double thinnest = 0;      // smallest width of a part
-  double radius = 0;        // of the disk that it is; 0: another shape
+  Vec2 centre, half;                  // of the box
+  double reach = 0;                   // from the centre of mass to the farthest point
+  double turningReach = 0;            // how far from the centre of mass a turn moves anything: 0 for a disk
+  double thinnest = 0;                // smallest width of a part
+  double radius = 0;                  // of the disk that it is; 0: another shape
   const ConvexPiece* only = nullptr;  // piece, if there is but one
 };
 Extent extentOf(const BodyShape& shape);

@@ -7,7 +7,7 @@ constexpr int kLeaf = 4;  // items
 // Larger than so many times the median is large, unless there are more than so many.
 constexpr double kLarge = 16;
 constexpr std::size_t kMostLarge = 16;
-}
+}  // namespace
 
 void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items) {
   items_ = items;
@@ -59,8 +59,8 @@ void BoxTree::setLargeApart(const std::vector<Box>& boxes) {
   const auto middle = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
   std::nth_element(sizes_.begin(), middle, sizes_.end());
   const double limit = kLarge * *middle;
-  const auto large = std::partition(items_.begin(), items_.end(),
-                                           [&](int item) { return sizeOf(boxes[item]) <= limit; });
+  const auto large =
+      std::partition(items_.begin(), items_.end(), [&](int item) { return sizeOf(boxes[item]) <= limit; });
   if (static_cast<std::size_t>(items_.end() - large) <= kMostLarge)
     small_ = static_cast<std::size_t>(large - items_.begin());
 }

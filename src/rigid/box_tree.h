@@ -1,6 +1,6 @@
 // A tree of boxes over items, for questions such as "which boxes meet this one": built top-down by medians
-// (O(n log n)), refitted in O(n) when boxes have changed a little, in O(log n) for each one when few have. A few
-// boxes far larger than most (walls) would widen every node above them: they are kept beside the tree.
+// (O(n log n)), refitted in O(n) when boxes have changed a little, in O(log n) for each one when few have. A
+// few boxes far larger than most (walls) would widen every node above them: they are kept beside the tree.
 #pragma once
 #include <algorithm>
 #include <utility>
@@ -58,8 +58,8 @@ class BoxTree {
     }
   }
 
-  /// Calls visit(item, item) once for every two items whose boxes meet, if one at least is `marked`: both trees
-  /// of a pair of nodes are descended together, which costs far less than a query for each item.
+  /// Calls visit(item, item) once for every two items whose boxes meet, if one at least is `marked`: both
+  /// trees of a pair of nodes are descended together, which costs far less than a query for each item.
   template <class Visit>
   void eachPair(const std::vector<char>& marked, Visit&& visit) {
     auto meet = [&](std::size_t k, std::size_t l) {
@@ -117,9 +117,9 @@ class BoxTree {
   std::vector<int> items_;
   std::size_t small_ = 0;  // so many of them are in the tree
   std::vector<double> sizes_;
-  std::vector<Box> boxes_;          // of items_
-  std::vector<int> place_, leaf_;  // by item: in items_; node, -1 beside the tree
-  std::vector<char> marked_;        // by node: an item in it is
+  std::vector<Box> boxes_;                  // of items_
+  std::vector<int> place_, leaf_;           // by item: in items_; node, -1 beside the tree
+  std::vector<char> marked_;                // by node: an item in it is
   std::vector<std::pair<int, int>> pairs_;  // of nodes, still to be looked at
 };
 

@@ -79,7 +79,8 @@ inline void scatter(Motion* to, const int* index, const Motions& m) {
 template <class Short>
 inline Lanes wide(Short a) {
 #ifdef __AVX512F__
-  return reinterpret_cast<Lanes>(_mm512_maskz_cvtps_pd(0xff, reinterpret_cast<__m256>(a)));  // GCC 12 takes it in halves
+  return reinterpret_cast<Lanes>(
+      _mm512_maskz_cvtps_pd(0xff, reinterpret_cast<__m256>(a)));  // GCC 12 takes it in halves
 #else
   return __builtin_convertvector(a, Lanes);
 #endif
@@ -216,8 +217,8 @@ void ContactBlocks::fill(Block& block, const Bodies& bodies, const std::vector<C
     to.armAT = brief(exact.armAT[p]);
     to.armBT = brief(exact.armBT[p]);
     auto mass = [&](Lanes armA, Lanes armB) {
-      const Lanes inverse = exact.inverseA + exact.inverseB + exact.inertiaA * armA * armA +
-                            exact.inertiaB * armB * armB;
+      const Lanes inverse =
+          exact.inverseA + exact.inverseB + exact.inertiaA * armA * armA + exact.inertiaB * armB * armB;
       return brief(inverse > 0 ? 1 / inverse : Lanes{});
     };
     to.massN = mass(exact.armAN[p], exact.armBN[p]);

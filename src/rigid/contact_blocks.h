@@ -23,8 +23,8 @@ class ContactBlocks {
     Lanes x, y, turn;
   };
 
-  /// Colours the contacts, which need no effective masses, and lays them out; `down`: along gravity, of length 1, or (0, 0). Those that find
-  /// no colour are listed in `rest`.
+  /// Colours the contacts, which need no effective masses, and lays them out; `down`: along gravity, of
+  /// length 1, or (0, 0). Those that find no colour are listed in `rest`.
   void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest, Vec2 down);
   bool empty() const { return blocks_.empty(); }
   /// Points that a sweep solves, empty lanes too.
@@ -82,13 +82,14 @@ class ContactBlocks {
   static double solvePoints(Block& block, Bodies& bodies, double perSecond, const Apart* first);
   static double solveBlock(Block& block, Bodies& bodies, double perSecond, const Apart* first);
   static void separate(const Block& block, const Apart& apart, Motion* moved, Motions& da, Motions& db);
-  static void fill(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts, const int* which);
+  static void fill(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts,
+                   const int* which);
   static void readLane(const Block& block, int lane, Contact& contact);
   // What does not change is kept short: a sweep over many contacts waits for the memory. Both bodies get the
   // same impulse, so momentum is kept to rounding whatever the normal's.
   struct Point {
     ShortLanes armAN, armBN, armAT, armBT;  // arm x normal, arm x tangent
-    ShortLanes massN, massT;  // over-relaxed where there are many
+    ShortLanes massN, massT;                // over-relaxed where there are many
     Lanes gap, impulseN, impulseT;
   };
   struct alignas(64) Block {
@@ -96,7 +97,7 @@ class ContactBlocks {
     int contact[kLanes];       // -1: empty lane
     int count;                 // points of its contacts: 1 or 2
     double change;             // of a relative velocity in the last sweep, m/s
-    double spare;  // all parted faster than they need by so much in the last sweep, m/s; 0: none
+    double spare;              // all parted faster than they need by so much in the last sweep, m/s; 0: none
     ShortLanes nx, ny, friction;
     ShortLanes inverseA, inertiaA, inverseB, inertiaB;
     Lanes total;  // N s along the normal so far in this step, but for the last sub-step

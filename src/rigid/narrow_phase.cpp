@@ -54,8 +54,15 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const Extent& extent = bodies.extent[b];
     expected_[b] = {v, room, moves ? room : kNoBound, extent.turningReach};
     const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
-    seen_[b] = {bodies.position[b],  v.linear(), v.turn, bodies.angleRad[b], extent.thinnest,
-                extent.turningReach, room,       bodies.surface[b].bounce > 0, isMoving && !bodies.moves(b)};
+    seen_[b] = {bodies.position[b],
+                v.linear(),
+                v.turn,
+                bodies.angleRad[b],
+                extent.thinnest,
+                extent.turningReach,
+                room,
+                bodies.surface[b].bounce > 0,
+                isMoving && !bodies.moves(b)};
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
@@ -80,7 +87,8 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     BodyPair& pair = pairs[k];
     calmFirst_[k] = static_cast<int>(calm_.size());
     if (next < due_.size() && due_[next] == static_cast<int>(k)) {
-      askAhead(next, [&](int due) { return pairs[due].key; }, bodies);
+      askAhead(
+          next, [&](int due) { return pairs[due].key; }, bodies);
       ++next;
       const Vec2 shift = broad.shiftOf(pair.key);
       double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
@@ -105,7 +113,8 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
 
 double NarrowPhase::relativeWay(const Seen& a, const Seen& b, double dt) {
   return (length(a.velocity - b.velocity) + std::abs(a.turn) * a.turningReach +
-          std::abs(b.turn) * b.turningReach) * dt;
+          std::abs(b.turn) * b.turningReach) *
+         dt;
 }
 
 bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double slow, double dt) {
@@ -206,13 +215,13 @@ void NarrowPhase::refreshNew(const Bodies& bodies, const BroadPhase& broad, doub
     if (isDue(pair, bodies, broad.shiftOf(pair.key), h)) due_.push_back(static_cast<int>(refreshed_));
   }
   for (std::size_t k = 0; k < due_.size(); ++k) {
-    askAhead(k, [&](int due) { return pairs_[due].key; }, bodies);
+    askAhead(
+        k, [&](int due) { return pairs_[due].key; }, bodies);
     LivelyPair& pair = pairs_[due_[k]];
     const double later = since ? std::max((*since)[pair.key.a], (*since)[pair.key.b]) : 0;
     next_.clear();
-    const double clear =
-        finder_.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h, pair.swept,
-                     lively_.data() + pair.first, pair.count, next_, {later, {}, {}});
+    const double clear = finder_.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h, pair.swept,
+                                      lively_.data() + pair.first, pair.count, next_, {later, {}, {}});
     pair.clear = !next_.empty() && !pair.swept ? pair.reuse : clear - pair.near;
     replace(pair, bodies);
   }
@@ -278,8 +287,8 @@ void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
   pair.count = count;
 }
 
-NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>* struck, BroadPhase& broad,
-                                    Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
+NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>* struck,
+                                    BroadPhase& broad, Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
   leaving_.clear();
   turned_.clear();
   auto wayOf = [&](int b) -> Motion {
@@ -352,7 +361,8 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
 
 bool NarrowPhase::mayPass(const Bodies& bodies, double h) const {
   return std::any_of(pairs_.begin(), pairs_.end(), [&](const LivelyPair& pair) {
-    return relativeSpeed(bodies, pair.key.a, pair.key.b) * h > kSwept * thinner(bodies, pair.key.a, pair.key.b);
+    return relativeSpeed(bodies, pair.key.a, pair.key.b) * h >
+           kSwept * thinner(bodies, pair.key.a, pair.key.b);
   });
 }
 

@@ -29,8 +29,8 @@ class NarrowPhase {
   void refreshAfterImpacts(const Bodies& bodies, const BroadPhase& broad, double h,
                            const std::vector<Motion>& struck, const std::vector<double>& struckAt);
   /// Bodies that would leave the way that was expected of them if they moved as fast as now, and by `struck`
-  /// (null: nothing), in this sub-step or in the next one: from then on their pairs are lively. `now`: some do
-  /// now (look at the new ones before they move).
+  /// (null: nothing), in this sub-step or in the next one: from then on their pairs are lively. `now`: some
+  /// do now (look at the new ones before they move).
   enum class Stir { none, later, now };
   Stir stir(const Bodies& bodies, const std::vector<Motion>* struck, BroadPhase& broad, Vec2 gravity,
             ContactBlocks& blocks, double timeLeft);
@@ -59,10 +59,10 @@ class NarrowPhase {
  private:
   struct LivelyPair {
     PairKey key;
-    int first = 0, count = 0;  // in lively_
-    bool swept = false;        // could pass through each other within a sub-step
-    double clear = 0;          // what was found holds until they have moved so far against each other, m
-    int pair = -1;             // in the broad phase's list; -1: found within the step
+    int first = 0, count = 0;    // in lively_
+    bool swept = false;          // could pass through each other within a sub-step
+    double clear = 0;            // what was found holds until they have moved so far against each other, m
+    int pair = -1;               // in the broad phase's list; -1: found within the step
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
   struct Expected {
@@ -102,7 +102,7 @@ class NarrowPhase {
   std::vector<Expected> expected_;
   std::vector<Seen> seen_;
   std::vector<int> stirred_;
-  std::vector<Motion> way_;  // of those that leave theirs
+  std::vector<Motion> way_;                // of those that leave theirs
   std::vector<char> livelyPair_;           // by index of the broad phase's pairs
   std::vector<int> calmFirst_;             // by pair: range in calm_
   std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in

@@ -25,8 +25,8 @@ inline double relativeSpeed(const Bodies& bodies, int a, int b) {
 /// and the circle of the other. `enough`: what needs no better one.
 double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough);
 /// Moves a contact along with its bodies, which have moved a little since it was found: the normal turns with
-/// the one whose edge it stands on, the points go with the other one's corners. `turned`: by body, by how much
-/// since.
+/// the one whose edge it stands on, the points go with the other one's corners. `turned`: by body, by how
+/// much since.
 void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contact& contact);
 
 class PairContacts {
@@ -38,8 +38,8 @@ class PairContacts {
     Motion struckA, struckB;
   };
   /// Adds the contacts of a pair whose gap is below `margin`, with the impulses of its `old` ones; `swept`:
-  /// of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any. They
-  /// are without effective masses.
+  /// of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any.
+  /// They are without effective masses.
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
               const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
 

@@ -19,7 +19,8 @@ constexpr double kSettledShare = 1e-2;
 // Both are this much less for a few points.
 constexpr double kSettledFew = 1e-8;
 constexpr long kFewPoints = 160;
-// A contact that parts faster than it needs by so many times what a sweep changed is left out of the next one.
+// A contact that parts faster than it needs by so many times what a sweep changed is left out of the next
+// one.
 constexpr double kSpare = 4;
 // So many sweeps are made before the further ones are drawn along a conjugate direction.
 constexpr int kPlainSweeps = 3;

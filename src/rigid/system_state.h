@@ -73,7 +73,7 @@ struct RigidSystem::State {
   bool shareKnown = false;
   bool firstOfStep = false;  // sub-step
   bool stirred = false, anyStruck = false, mayBounce = false;
-  std::vector<Motion> way;         // of a sub-step, where pairs may pass through each other
+  std::vector<Motion> way;  // of a sub-step, where pairs may pass through each other
 
   /// What a time does to a body's velocity by itself: gravity, and damping that decays exponentially.
   struct Drive {

@@ -300,7 +300,8 @@ void RigidSystem::State::keepInside() {
   const Vec2 edge{kEdge * walls.width, kEdge * walls.height};
   for (int b = kWalls; b < bodies.count(); ++b) {
     const Vec2 at = bodies.positionNow(b);
-    if (at.x > edge.x && at.x < walls.width - edge.x && at.y > edge.y && at.y < walls.height - edge.y) continue;
+    if (at.x > edge.x && at.x < walls.width - edge.x && at.y > edge.y && at.y < walls.height - edge.y)
+      continue;
     if (!bodies.moves(b)) continue;
     keep(at.x, walls.width, shut[0], shut[1], bodies.moved[b].x, bodies.velocity[b].x);
     keep(at.y, walls.height, shut[2], shut[3], bodies.moved[b].y, bodies.velocity[b].y);
