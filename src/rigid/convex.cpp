@@ -28,8 +28,9 @@ void finishPiece(ConvexPiece& piece) {
     piece.normals[k] = size > 0 ? Vec2{along.y / size, -along.x / size} : Vec2{};
   }
   constexpr std::size_t kFour = 4;
-  piece.fours.assign((edges + kFour - 1) / kFour, {Lanes{} + piece.points[0].x, Lanes{} + piece.points[0].y,
-                                                   Lanes{}, Lanes{}, Lanes{} + 1e300});
+  piece.fours.assign((edges + kFour - 1) / kFour,
+                     {ConvexPiece::Lanes{} + piece.points[0].x, ConvexPiece::Lanes{} + piece.points[0].y,
+                      ConvexPiece::Lanes{}, ConvexPiece::Lanes{}, ConvexPiece::Lanes{} + 1e300});
   for (std::size_t k = 0; k < edges; ++k) {
     ConvexPiece::Four& four = piece.fours[k / kFour];
     four.cornerX[k % kFour] = piece.points[k].x;

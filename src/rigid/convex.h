@@ -7,7 +7,6 @@
 
 #include "base/maths.h"
 #include "geometry/vec2.h"
-#include "rigid/lanes.h"
 
 namespace smokebox {
 
@@ -48,6 +47,7 @@ struct ConvexPiece {
   double within = 0;  // the disk of this radius about `centre` lies within the core
   /// The same four at a time: corners, and the lines of the edges that begin there, `out` from (0, 0) along
   /// the normal. Lanes that are left over have corner 0 and a line at which nothing arrives.
+  typedef double Lanes __attribute__((vector_size(32)));
   struct Four {
     Lanes cornerX, cornerY, normalX, normalY, out;
   };

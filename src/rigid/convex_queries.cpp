@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rigid/lanes.h"
+
 namespace smokebox::convex {
 
 namespace {
