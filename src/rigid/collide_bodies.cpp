@@ -53,18 +53,17 @@ class Descent {
 
 }  // namespace
 
-bool findPiecePairs(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb, double margin,
+void findPiecePairs(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb, double margin,
                     std::vector<PiecePair>& pairs) {
   pairs.clear();
   if (a.pieces.size() == 1 && b.pieces.size() == 1) {  // collide() looks first whether they are near
     pairs.push_back({0, 0});
-    return true;
+    return;
   }
-  if (a.tree.nodes().empty() || b.tree.nodes().empty()) return false;
+  if (a.tree.nodes().empty() || b.tree.nodes().empty()) return;
   Descent(a, b, relativeFrame(fa, fb), margin, pairs).visit(0, 0);
   std::sort(pairs.begin(), pairs.end(),
             [](PiecePair x, PiecePair y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-  return false;
 }
 
 }  // namespace smokebox

@@ -13,8 +13,8 @@ struct PiecePair {
 
 /// Pairs of pieces whose boxes come within `margin`, in ascending order (a, then b): the two trees are
 /// descended against each other. `pairs` is emptied first; nothing is allocated once it is large enough.
-/// True: all pairs are listed, for there is but one, near or far.
-bool findPiecePairs(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb, double margin,
+/// Where each has one piece, that pair is listed, near or far.
+void findPiecePairs(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb, double margin,
                     std::vector<PiecePair>& pairs);
 
 }  // namespace smokebox

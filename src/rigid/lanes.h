@@ -3,6 +3,8 @@
 #include <cstring>
 
 namespace smokebox {
+// Of its own: base/lanes.h has functions of these names for sixteen floats.
+inline namespace rigid_lanes {
 
 typedef double Lanes __attribute__((vector_size(32)));
 typedef float FloatLanes __attribute__((vector_size(32)));
@@ -50,4 +52,5 @@ inline double sumOf(FloatLanes lanes) {
 
 inline int roundedToLanes(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
+}  // namespace rigid_lanes
 }  // namespace smokebox
