@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "fluid/multigrid_apply.h"
 #include "fluid/multigrid_kernels.h"
 #include "fluid/multigrid_parents.h"
 #include "fluid/multigrid_transfer.h"
@@ -39,7 +40,7 @@ void sweepDown(Level& level, int s, int j) {
     sweepUnit<false, true>(level, j, 0);
   else if (s < kFullSweeps)
     sweepUnit<false>(level, j, s & 1);
-  else
+  else if (!(level.rowKind[j] & Level::kNoBand))
     sweepUnit<true>(level, j, s & 1);
 }
 
@@ -48,20 +49,19 @@ void sweepUp(Level& level, int s, int j) {
   const int mirrored = kSweeps - 1 - s;
   if (mirrored < kFullSweeps)
     sweepUnit<false>(level, j, mirrored & 1);
-  else
+  else if (!(level.rowKind[j] & Level::kNoBand))
     sweepUnit<true>(level, j, mirrored & 1);
 }
 
 Multigrid::Products productsOfRow(const Level& level, int j) {
   Lanes slope = {}, curvature = {};
-  const std::uint8_t* kind = level.chunkRow(j);
-  for (int c = 0; c < level.chunks; ++c) {
-    if (kind[c] & multigrid::kEmpty) continue;
-    const std::ptrdiff_t at = level.at(c * kLanes, j);
-    const Lanes value = load(level.x.data() + at);
-    slope += value * load(level.b.data() + at);
-    curvature += value * applyChunk(level, kind[c], level.x.data(), at);
-  }
+  const float *x = level.x.data(), *b = level.b.data();
+  multigrid::applyRow(
+      level, level.x, j, [&](std::ptrdiff_t i, const Lanes& sum) __attribute__((always_inline)) {
+        const Lanes value = load(x + i);
+        slope += value * load(b + i);
+        curvature += value * sum;
+      });
   return {multigrid::sumOfLanes(slope), multigrid::sumOfLanes(curvature)};
 }
 

@@ -9,6 +9,53 @@ namespace {
 
 constexpr float kSlack = 1e-4f, kAnything = 1e9f;
 
+/// The side that a chunk lies beside, if all its links but those over it are 1 (and the values there 0).
+std::uint8_t sideOf(const Level& level, int c, bool whole, Lanes left, Lanes right, const Lanes& below,
+                    const Lanes& above) {
+  const bool first = c == 0, last = c + 1 == level.chunks;
+  if (!whole || first == last || level.periodicX) return kGeneral;
+  if (first) left[0] = 1;
+  if (last) right[kLanes - 1] = 1;
+  const LaneMask ones = ((left == 1.0f) & (right == 1.0f)) & ((below == 1.0f) & (above == 1.0f));
+  return !allLanes(ones) ? kGeneral : first ? kLeftSide : kRightSide;
+}
+
+/// Cells a and b, linked over the left face of b.
+Level::Pair linkedPair(const Level& level, std::ptrdiff_t a, std::ptrdiff_t b) {
+  return pairOf(level.ax[b] * level.id[a], level.ax[b] * level.id[b]);
+}
+
+/// Joins a chunk of row j to the run before, if it goes on in the same way.
+void addToRuns(const Level& level, int j, const Level::Run& chunk, const std::vector<int>& begin,
+               std::vector<Level::Run>& runs) {
+  const int middle = level.swapsAt;
+  const bool swaps = middle < level.nx && (chunk.begin == middle / kLanes * kLanes ||
+                                           chunk.begin == (middle + kLanes - 1) / kLanes * kLanes);
+  if (begin[j] < static_cast<int>(runs.size()) && runs.back().end == chunk.begin &&
+      runs.back().kind == chunk.kind && !swaps)
+    runs.back().end = chunk.end;
+  else
+    runs.push_back(chunk);
+}
+
+std::uint8_t rowKindOf(const Level& level, int j) {
+  const auto noBand = [&](int row) { return level.bandBegin[row] == level.bandBegin[row + 1]; };
+  const bool pair = level.inMiddleRows(j) && level.hasMiddleRows(), seam = level.inSeamRows(j);
+  const int other = pair ? 2 * level.swapsAtRow - 1 - j : seam ? level.ny - 1 - j : j;
+  const std::uint8_t band = noBand(j) && noBand(other) ? Level::kNoBand : 0;
+  const std::uint8_t* kind = level.chunkRow(j);
+  bool plain = !pair && !seam && level.chunks > 1 && level.nx % kLanes == 0 &&
+               (level.swapsAt >= level.nx || level.swapsAt % kLanes == 0) && (kind[0] & kLeftSide) &&
+               (kind[level.chunks - 1] & kRightSide) &&
+               level.specialBegin[2 * j] == level.specialBegin[2 * j + 2];
+  unsigned empty = 0;
+  for (int c = 0; c < level.chunks; ++c) {
+    if (c > 0 && c + 1 < level.chunks) plain = plain && (kind[c] & kRegular);
+    empty |= kind[c] & kEmpty;
+  }
+  return static_cast<std::uint8_t>(band | (plain ? Level::kPlain : 0) | (empty ? Level::kGaps : 0));
+}
+
 }  // namespace
 
 // The cells of chunk c that lie in a chunk near a solid, if chunks are counted from the right end of the row.
@@ -66,7 +113,8 @@ void Builder::classify(Level& level) {
           off(left, high * load(level.nearX.data() + i), load(level.slackX.data() + i)) |
           off(right, high * load(level.nearX.data() + i + 1), load(level.slackX.data() + i + 1)) |
           off(below, wide * nearBelow, zero + slackBelow) | off(above, wide * nearAbove, zero + slackAbove);
-      level.chunk[k] = bitsOf(used) ? kGeneral : kEmpty;
+      level.chunk[k] =
+          bitsOf(used) ? sideOf(level, c, whole, left, right, below, above) : std::uint8_t{kEmpty};
       disturbed_[k] = static_cast<std::uint16_t>(bitsOf(beside));
     }
   }
@@ -126,12 +174,8 @@ void Builder::classify(Level& level) {
     for (int c = 0; c < level.chunks; ++c) {
       const int k = j * level.chunks + c, i = c * kLanes;
       if (level.chunk[k] & kEmpty) continue;
-      const bool regular = level.chunk[k] & kRegular;
-      if (level.runBegin[j] < static_cast<int>(level.runs.size()) && level.runs.back().end == i &&
-          level.runs.back().regular == regular)
-        level.runs.back().end = i + kLanes;
-      else
-        level.runs.push_back({i, i + kLanes, regular});
+      const auto kind = static_cast<std::uint8_t>(level.chunk[k] & (kRegular | kLeftSide | kRightSide));
+      addToRuns(level, j, {i, i + kLanes, kind}, level.runBegin, level.runs);
 
       unsigned near = near_[c];
       if (c > 0) near |= near_[c - 1] & 0xc000u;
@@ -142,14 +186,18 @@ void Builder::classify(Level& level) {
       }
       if (!near) continue;
       level.chunk[k] |= kBand;
-      if (level.bandBegin[j] < static_cast<int>(level.bandRuns.size()) && level.bandRuns.back().end == i)
-        level.bandRuns.back().end = i + kLanes;
-      else
-        level.bandRuns.push_back({i, i + kLanes, false});
+      addToRuns(level, j, {i, i + kLanes, kGeneral}, level.bandBegin, level.bandRuns);
     }
+    const std::ptrdiff_t first = level.at(0, j), last = level.at(level.nx - 1, j),
+                         middle = level.at(level.swapsAt, j);
+    level.sideCells[2 * j] = {level.ax[first], level.id[first]};
+    level.sideCells[2 * j + 1] = {level.ax[last + 1], level.id[last]};
+    if (level.swapsAt < level.nx) level.middlePairs[j] = linkedPair(level, middle - 1, middle);
+    if (level.hasSeamColumns()) level.seamPairs[j] = linkedPair(level, last, first);
   }
   level.runBegin[level.ny] = static_cast<int>(level.runs.size());
   level.bandBegin[level.ny] = static_cast<int>(level.bandRuns.size());
+  for (int j = 0; j < level.ny; ++j) level.rowKind[j] = rowKindOf(level, j);
 }
 
 }  // namespace smokebox::multigrid

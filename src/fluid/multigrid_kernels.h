@@ -67,7 +67,7 @@ SMOKEBOX_INLINE unsigned bitsOf(const LaneMask& m) {
 SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int j, int colour) {
   const LaneMask even = {-1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
   const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const LaneMask mask = ((level.colourOfRow(j) + colour) & 1) ? ~even : even;
+  const LaneMask mask = even ^ -((level.colourOfRow(j) + colour) & 1);
   return mask ^ (place >= level.swapsAt - static_cast<int>(i));
 }
 
@@ -77,101 +77,125 @@ SMOKEBOX_INLINE LaneMask lanesOfBits(std::uint16_t bits) {
   return (place & static_cast<int>(bits)) != 0;
 }
 
-/// The new values of both colours in 16 cells; `left` are the values to the left of them.
-SMOKEBOX_INLINE Lanes relaxedGeneral(const float* x, const float* b, const float* ax, const float* ay,
-                                     const float* id, std::ptrdiff_t stride, const Lanes& left) {
-  return (((load(ax) * left + load(ax + 1) * load(x + 1)) +
-           (load(ay) * load(x - stride) + load(ay + stride) * load(x + stride))) +
-          load(b)) *
-         load(id);
+/// What stands for a quarter in the chunk beside a side, and for the links to the left and to the right of
+/// its cells.
+SMOKEBOX_INLINE LaneMask laneAtSide(int kind) {
+  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  return place == (kind & kLeftSide ? 0 : kLanes - 1);
+}
+SMOKEBOX_INLINE const Level::SideCell& sideCell(const Level& level, int kind, int j) {
+  return level.sideCells[2 * j + (kind & kLeftSide ? 0 : 1)];
+}
+SMOKEBOX_INLINE Lanes inverseDiagonal(const Level& level, int kind, int j) {
+  const Lanes quarter = Lanes{} + 0.25f;
+  if (kind & kRegular) return quarter;
+  return laneAtSide(kind) ? Lanes{} + sideCell(level, kind, j).inverse : quarter;
 }
 
-/// Sweeps the cells of `lanes` in the chunks [begin, end) of a row; returns the old values to the left of the
-/// next chunk.
-SMOKEBOX_INLINE Lanes sweepRegular(float* x, const float* b, std::ptrdiff_t stride, int begin, int end,
-                                   Lanes left, const LaneMask& lanes) {
-  Lanes here = load(x + begin);
-  for (int i = begin; i < end; i += kLanes) {
-    const Lanes ahead = load(x + i + kLanes);
+/// Goes along a row, chunk by chunk: the values of one, and those to the left and to the right of them. What
+/// lies to the left of the next chunk is known before this one is stored: the store would stall the load, and
+/// two columns of one colour, in the middle, see each other's old values.
+class Along {
+ public:
+  Lanes left = {}, here = {}, right = {};
+
 #ifdef __AVX512F__
-    // From what is loaded already: loads across two lines of the cache take twice as long.
+  // From what is loaded already: loads across two lines of the cache take twice as long.
+  SMOKEBOX_INLINE explicit Along(const float* x) : here(load(x - kLanes)), ahead_(load(x)) {}
+  SMOKEBOX_INLINE void at(const float* x) {
     const LaneMask next = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
-    const Lanes right = __builtin_shuffle(here, ahead, next);
-    const Lanes nextLeft = __builtin_shuffle(here, ahead, next + (kLanes - 2));
-#else
-    const Lanes right = load(x + i + 1), nextLeft = load(x + i + kLanes - 1);
-#endif
-    const Lanes value =
-        (((left + right) + (load(x + i - stride) + load(x + i + stride))) + load(b + i)) * 0.25f;
-    store(x + i, lanes ? value : here);
-    left = nextLeft;
-    here = ahead;
+    left = __builtin_shuffle(here, ahead_, next + (kLanes - 2));
+    here = ahead_;
+    ahead_ = load(x + kLanes);
+    right = __builtin_shuffle(here, ahead_, next);
   }
-  return left;
+
+ private:
+  Lanes ahead_;
+#else
+  SMOKEBOX_INLINE explicit Along(const float* x) : nextLeft_(load(x - 1)) {}
+  SMOKEBOX_INLINE void at(const float* x) {
+    left = nextLeft_, here = load(x), right = load(x + 1);
+    nextLeft_ = load(x + kLanes - 1);
+  }
+
+ private:
+  Lanes nextLeft_;
+#endif
+};
+
+/// Sweeps the cells of `lanes` in the chunks [begin, end) of a row whose links are 1, or lead to values that
+/// are 0.
+SMOKEBOX_INLINE void sweepRegular(Along& along, float* x, const float* b, std::ptrdiff_t stride, int begin,
+                                  int end, const LaneMask& lanes, const Lanes& inverse) {
+  for (int i = begin; i < end; i += kLanes) {
+    along.at(x + i);
+    const Lanes value =
+        (((along.left + along.right) + (load(x + i - stride) + load(x + i + stride))) + load(b + i)) *
+        inverse;
+    store(x + i, lanes ? value : along.here);
+  }
 }
 
-/// The same for a run of them: the colours are the same in all lanes up to a middle, and beyond it.
-SMOKEBOX_INLINE Lanes sweepRegularRun(const Level& level, float* x, const float* b, const Level::Run& run,
-                                      Lanes left, int j, int colour) {
-  const int last = run.end, middle = level.swapsAt;
-  const std::ptrdiff_t stride = level.stride;
-  for (int i = run.begin; i < last;) {
-    int end = last;
-    if (i < middle && middle < last) end = std::max(middle / kLanes * kLanes, i + kLanes);
-    left = sweepRegular(x, b, stride, i, end, left, lanesOfColour(level, i, j, colour));
-    i = end;
-  }
-  return left;
+/// Any chunk: its cells of `lanes`.
+SMOKEBOX_INLINE void sweepGeneral(const Along& along, float* x, const float* b, const float* ax,
+                                  const float* ay, const float* id, std::ptrdiff_t stride,
+                                  const LaneMask& lanes) {
+  const Lanes value = (((load(ax) * along.left + load(ax + 1) * along.right) +
+                        (load(ay) * load(x - stride) + load(ay + stride) * load(x + stride))) +
+                       load(b)) *
+                      load(id);
+  store(x, lanes ? value : along.here);
 }
 
 /// Where two cells have next to no link but that between them, they cannot be solved as one.
 constexpr float kMostOfPair = 0.98f;
 
-/// Two linked cells of one colour are solved as one, from what a sweep has made of each with the old value of
-/// the other. `overA`, `overB`: the link over the diagonal. What is none of the sweeps' over rows (special)
-/// is left as it is.
-SMOKEBOX_INLINE void solvePair(float& a, float& b, float overA, float overB, float wasA, float wasB) {
-  if (!(overA > 0 && overB > 0)) return;
+inline Level::Pair pairOf(float overA, float overB) {
+  if (!(overA > 0 && overB > 0)) return {overA, overB, 0};
   const float both = overA * overB;
-  if (both > kMostOfPair) {
+  return {overA, overB, both > kMostOfPair ? -1 : 1 / (1 - both)};
+}
+
+/// Two linked cells of one colour are solved as one, from what a sweep has made of each with the old value of
+/// the other. What is none of the sweeps' over rows (special) is left as it is.
+SMOKEBOX_INLINE void solvePair(float& a, float& b, const Level::Pair& pair, float wasA, float wasB) {
+  if (pair.scale == 0) return;
+  if (pair.scale < 0) {
     a = 0.5f * (a + wasA);
     b = 0.5f * (b + wasB);
     return;
   }
-  const float p = a - overA * wasB, q = b - overB * wasA, scale = 1 / (1 - both);
-  a = (p + overA * q) * scale;
-  b = (q + overB * p) * scale;
+  const float p = a - pair.overA * wasB, q = b - pair.overB * wasA;
+  a = (p + pair.overA * q) * pair.scale;
+  b = (q + pair.overB * p) * pair.scale;
 }
 
 /// Two cells of a row, of one colour and linked: in the middle, or across the seam.
 class ColumnPair {
  public:
   /// Cells a and b = a + 1, or the last and the first of the row. `swept`: both are.
-  ColumnPair(const Level& level, int a, int b, int j, bool swept) : swept_(swept) {
-    if (!swept) return;
-    const std::ptrdiff_t atA = level.at(a, j), atB = level.at(b, j);
-    a_ = a, b_ = b;
-    overA_ = level.ax[atB] * level.id[atA];
-    overB_ = level.ax[atB] * level.id[atB];
+  ColumnPair(const Level::Pair* pair, float* a, float* b, bool swept)
+      : pair_(swept && pair->scale != 0 ? pair : nullptr), a_(a), b_(b) {}
+  void keep() {
+    if (pair_) wasA_ = *a_, wasB_ = *b_;
   }
-  void keep(const float* x) {
-    if (swept_) wasA_ = x[a_], wasB_ = x[b_];
-  }
-  void solve(float* x) const {
-    if (swept_) solvePair(x[a_], x[b_], overA_, overB_, wasA_, wasB_);
+  void solve() const {
+    if (pair_) solvePair(*a_, *b_, *pair_, wasA_, wasB_);
   }
 
  private:
-  bool swept_;
-  int a_ = 0, b_ = 0;
-  float overA_ = 0, overB_ = 0, wasA_ = 0, wasB_ = 0;  // was: before the sweep
+  const Level::Pair* pair_;
+  float *a_, *b_;
+  float wasA_ = 0, wasB_ = 0;  // before the sweep
 };
 
 /// Row j's pair in the middle, if it is of this colour and swept. Those of two rows of one colour make four.
 template <bool bandOnly>
-inline ColumnPair middlePair(const Level& level, int j, int colour) {
+SMOKEBOX_INLINE ColumnPair middlePair(Level& level, int j, int colour) {
   const int b = level.swapsAt, a = b - 1;
-  return ColumnPair(level, a, b, j,
+  float* x = level.row(level.x, j);
+  return ColumnPair(&level.middlePairs[j], x + a, x + b,
                     b < level.nx && !level.inMiddleRows(j) && !level.inSeamRows(j) &&
                         level.colourOf(b, j) == colour &&
                         (!bandOnly || (level.inBand(a, j) && level.inBand(b, j))));
@@ -179,9 +203,10 @@ inline ColumnPair middlePair(const Level& level, int j, int colour) {
 
 /// The same across the seam; two rows of one colour have none.
 template <bool bandOnly>
-inline ColumnPair seamPair(const Level& level, int j, int colour) {
+SMOKEBOX_INLINE ColumnPair seamPair(Level& level, int j, int colour) {
   const int a = level.nx - 1, b = 0;
-  return ColumnPair(level, a, b, j,
+  float* x = level.row(level.x, j);
+  return ColumnPair(&level.seamPairs[j], x + a, x + b,
                     level.hasSeamColumns() && !level.inMiddleRows(j) && !level.inSeamRows(j) &&
                         level.colourOf(b, j) == colour &&
                         (!bandOnly || (level.inBand(a, j) && level.inBand(b, j))));
@@ -232,9 +257,9 @@ inline void solveSpecialPairs(Level& level, int j, int colour) {
     const Level::SpecialPair& pair = level.specialPairs[k];
     float &a = level.x[level.specialAt[pair.a]], &b = level.x[level.specialAt[pair.b]];
     if (start)
-      solvePair(a, b, pair.overA, pair.overB, 0, 0);
+      solvePair(a, b, pairOf(pair.overA, pair.overB), 0, 0);
     else
-      solvePair(level.specialValue[pair.a], level.specialValue[pair.b], pair.overA, pair.overB, a, b);
+      solvePair(level.specialValue[pair.a], level.specialValue[pair.b], pairOf(pair.overA, pair.overB), a, b);
   }
 }
 
@@ -257,42 +282,57 @@ inline void sweepGrid(Level& level, int j, int colour) {
   const Level::Run* run = (bandOnly ? level.bandRuns : level.runs).data() + begin[j];
   const Level::Run* end = (bandOnly ? level.bandRuns : level.runs).data() + begin[j + 1];
   ColumnPair middle = middlePair<bandOnly>(level, j, colour), seam = seamPair<bandOnly>(level, j, colour);
-  middle.keep(x);
-  seam.keep(x);
+  middle.keep();
+  seam.keep();
   const std::uint16_t* cells = bandOnly && !level.bandCells.empty()
                                    ? level.bandCells.data() + static_cast<std::size_t>(j) * level.chunks
                                    : nullptr;
-  Lanes left = {};
-  for (int done = -1; run != end; ++run) {
-    // The left neighbours of the next chunk are loaded before this one is stored: the store would stall the
-    // load. Two columns of one colour, in the middle, so see each other's old values.
-    if (run->begin != done) left = load(x + run->begin - 1);
-    done = run->end;
-    if (!bandOnly && run->regular) {
-      left = sweepRegularRun(level, x, b, *run, left, j, colour);
-    } else if (bandOnly && cells) {
-      for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
-        const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
-        const Lanes value = relaxedGeneral(x + i, b + i, ax + i, ay + i, id + i, stride, left);
-        left = nextLeft;
-        store(x + i, (lanesOfColour(level, i, j, colour) & lanesOfBits(cells[i / kLanes])) ? value : old);
+  for (; run != end;) {
+    Along along(x + run->begin);
+    int done = run->begin;
+    for (; run != end && run->begin == done; done = run++->end) {
+      const LaneMask lanes = lanesOfColour(level, done, j, colour);
+      if (!bandOnly && run->kind != kGeneral) {
+        sweepRegular(along, x, b, stride, done, run->end, lanes, inverseDiagonal(level, run->kind, j));
+        continue;
       }
-    } else {
-      for (std::ptrdiff_t i = run->begin; i < run->end; i += kLanes) {
-        const Lanes old = load(x + i), nextLeft = load(x + i + kLanes - 1);
-        const Lanes value = relaxedGeneral(x + i, b + i, ax + i, ay + i, id + i, stride, left);
-        left = nextLeft;
-        store(x + i, lanesOfColour(level, i, j, colour) ? value : old);
+      for (std::ptrdiff_t i = done, last = run->end; i < last; i += kLanes) {
+        along.at(x + i);
+        sweepGeneral(along, x + i, b + i, ax + i, ay + i, id + i, stride,
+                     cells ? lanes & lanesOfBits(cells[i / kLanes]) : lanes);
       }
     }
   }
-  middle.solve(x);
-  seam.solve(x);
+  middle.solve();
+  seam.solve();
+}
+
+/// The same in a plain row.
+inline void sweepPlainRow(Level& level, int j, int colour) {
+  float* x = level.row(level.x, j);
+  const float* b = level.row(level.b, j);
+  const std::ptrdiff_t stride = level.stride;
+  const int last = level.nx - kLanes, middle = std::min(level.swapsAt, last);
+  const Lanes quarter = Lanes{} + 0.25f;
+  const LaneMask lanes = lanesOfColour(level, 0, j, colour),
+                 beyond = lanesOfColour(level, level.nx - kLanes, j, colour);
+  ColumnPair pair = middlePair<false>(level, j, colour);
+  pair.keep();
+  Along along(x);
+  sweepRegular(along, x, b, stride, 0, kLanes, lanes, inverseDiagonal(level, kLeftSide, j));
+  sweepRegular(along, x, b, stride, kLanes, middle, lanes, quarter);
+  sweepRegular(along, x, b, stride, std::max(middle, kLanes), last, beyond, quarter);
+  sweepRegular(along, x, b, stride, last, last + kLanes, beyond, inverseDiagonal(level, kRightSide, j));
+  pair.solve();
 }
 
 /// The same with the special unknowns: those and the others of their colour see each other's old values.
 template <bool bandOnly>
 inline void sweepRow(Level& level, int j, int colour) {
+  if (!bandOnly && (level.rowKind[j] & Level::kPlain)) {
+    sweepPlainRow(level, j, colour);
+    return;
+  }
   const std::vector<int>& begin = bandOnly ? level.bandBegin : level.runBegin;
   if (begin[j] == begin[j + 1]) return;  // special unknowns are in the band
   relaxSpecials(level, j, colour);
@@ -311,20 +351,20 @@ inline void startRow(Level& level, int j) {
   const Lanes zero = {};
   for (int r = level.runBegin[j]; r < level.runBegin[j + 1]; ++r) {
     const Level::Run& run = level.runs[r];
-    if (run.regular) {
-      for (int i = run.begin; i < run.end; i += kLanes) {
-        if (large) expect(b + i + level.stride), expect(x + i + level.stride);
-        store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * 0.25f : zero);
-      }
+    const LaneMask lanes = lanesOfColour(level, run.begin, j, 0);
+    if (large)
+      for (int i = run.begin; i < run.end; i += kLanes)
+        expect(b + i + level.stride), expect(x + i + level.stride);
+    if (run.kind != kGeneral) {
+      const Lanes inverse = inverseDiagonal(level, run.kind, j);
+      for (int i = run.begin; i < run.end; i += kLanes) store(x + i, lanes ? load(b + i) * inverse : zero);
     } else {
-      for (int i = run.begin; i < run.end; i += kLanes) {
-        if (large) expect(b + i + level.stride), expect(x + i + level.stride);
-        store(x + i, lanesOfColour(level, i, j, 0) ? load(b + i) * load(id + i) : zero);
-      }
+      for (int i = run.begin; i < run.end; i += kLanes)
+        store(x + i, lanes ? load(b + i) * load(id + i) : zero);
     }
   }
-  middlePair<false>(level, j, 0).solve(x);
-  seamPair<false>(level, j, 0).solve(x);
+  middlePair<false>(level, j, 0).solve();
+  seamPair<false>(level, j, 0).solve();
   for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 1]; ++s)
     level.x[level.specialAt[s]] =
         level.b[level.specialAt[s]] * level.specialInverse[s] * level.specialShare[s];
@@ -392,7 +432,8 @@ class RowPair {
         if (level_.colourOf(i, lower_) != colour) continue;
         if (i == level_.swapsAt || i == level_.swapsAt - 1) continue;
         if (bandOnly && !(level_.inBand(i, lower_) && level_.inBand(i, upper_))) continue;
-        solvePair(below[i], above[i], link[i] * idBelow[i], link[i] * idAbove[i], wasBelow[i], wasAbove[i]);
+        solvePair(below[i], above[i], pairOf(link[i] * idBelow[i], link[i] * idAbove[i]), wasBelow[i],
+                  wasAbove[i]);
       }
     }
     if (level_.swapsAt < level_.nx && level_.colourOf(level_.swapsAt, lower_) == colour) {
@@ -446,73 +487,5 @@ class RowPair {
   Level& level_;
   int upper_, lower_, scratch_;
 };
-
-/// Sum over the links of  weight (value here - value there)  in one chunk of a row.
-SMOKEBOX_INLINE Lanes applyChunk(const Level& level, std::uint8_t kind, const float* x,
-                                 std::ptrdiff_t offset) {
-  const float* here = x + offset;
-  const Lanes v = load(here);
-  if (kind & kRegular)
-    return (4.0f * v - (load(here - 1) + load(here + 1))) -
-           (load(here - level.stride) + load(here + level.stride));
-  const float* ax = level.ax.data() + offset;
-  const float* ay = level.ay.data() + offset;
-  const Lanes left = load(ax), right = load(ax + 1), below = load(ay), above = load(ay + level.stride);
-  Lanes sum = (left * (v - load(here - 1)) + right * (v - load(here + 1))) +
-              (below * (v - load(here - level.stride)) + above * (v - load(here + level.stride)));
-  if (level.tellsWhole) {
-    const LaneMask whole = ((left == 1.0f) & (right == 1.0f)) & ((below == 1.0f) & (above == 1.0f));
-    sum = whole ? (4.0f * v - (load(here - 1) + load(here + 1))) -
-                      (load(here - level.stride) + load(here + level.stride))
-                : sum;
-  }
-  const Lanes zero = {};
-  return load(level.id.data() + offset) > 0.0f ? sum : zero;
-}
-
-/// The same for a special unknown, in the same order.
-inline float applySpecial(const Level& level, int s) {
-  const float* values = level.x.data();
-  const float v = values[level.specialAt[s]];
-  if (level.starred[s]) {
-    const Level::Star& star = level.star[s];
-    if (level.starred[s] == Level::kWholeStar)
-      return (4.0f * v - (values[star.to[0]] + values[star.to[2]])) -
-             (values[star.to[4]] + values[star.to[6]]);
-    const auto side = [&](int k) __attribute__((always_inline)) {
-      return star.weight[k] * (v - values[star.to[k]]) + star.weight[k + 1] * (v - values[star.to[k + 1]]);
-    };
-    return (side(0) + side(2)) + (side(4) + side(6));
-  }
-  double side[4] = {};
-  for (int e = level.entryBegin[s]; e < level.entryBegin[s + 1]; ++e) {
-    const Level::Entry& entry = level.entries[e];
-    side[static_cast<int>(entry.towards)] += static_cast<double>(entry.weight * (v - values[entry.to]));
-  }
-  return (static_cast<float>(side[0]) + static_cast<float>(side[1])) +
-         (static_cast<float>(side[2]) + static_cast<float>(side[3]));
-}
-
-/// b - A x of row j into its residual row.
-inline void residualOfRow(Level& level, int j) {
-  float* r = level.residualRow(j);
-  const std::uint8_t* kind = level.chunkRow(j);
-  const Lanes zero = {};
-  for (int c = 0, i = 0; c < level.chunks; ++c, i += kLanes) {
-    const std::ptrdiff_t offset = level.at(i, j);
-    if (kind[c] & kEmpty)
-      store(r + i, zero);
-    else
-      store(r + i, load(level.b.data() + offset) - applyChunk(level, kind[c], level.x.data(), offset));
-  }
-  for (int s = level.specialBegin[2 * j]; s < level.specialBegin[2 * j + 2]; ++s) {
-    const int at = level.specialAt[s];
-    const float sum = level.b[at] - applySpecial(level, s);
-    if (at >= level.extrasBegin)
-      level.residualExtra[at - level.extrasBegin] = sum;
-    else
-      r[at - level.at(0, j)] = sum;
-  }
-}
 
 }  // namespace smokebox::multigrid

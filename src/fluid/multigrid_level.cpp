@@ -41,6 +41,10 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
   bandBegin.assign(ny + 1, 0);
   const std::size_t cells = static_cast<std::size_t>(nx) * ny;
   part.assign(cells, 0);
+  sideCells.assign(2 * ny, {});
+  rowKind.assign(ny, 0);
+  middlePairs.assign(ny, {});
+  seamPairs.assign(ny, {});
   specialBegin.assign(2 * ny + 1, 0);
   specialPairBegin.assign(2 * ny + 1, 0);
   prolongBegin.assign(ny + 1, 0);
@@ -57,7 +61,8 @@ void Level::shape(int columns, int rows, bool wrapX, bool wrapY, bool wholeResid
 
 std::size_t Level::bytes() const {
   return bytesOf(x) + bytesOf(b) + bytesOf(ax) + bytesOf(ay) + bytesOf(id) + bytesOf(chunk) + bytesOf(runs) +
-         bytesOf(bandRuns) + bytesOf(extraBase) + bytesOf(extraCell) + bytesOf(specialBegin) +
+         bytesOf(bandRuns) + bytesOf(sideCells) + bytesOf(rowKind) + bytesOf(middlePairs) +
+         bytesOf(seamPairs) + bytesOf(extraBase) + bytesOf(extraCell) + bytesOf(specialBegin) +
          bytesOf(specialAt) + bytesOf(specialCell) + bytesOf(specialInverse) + bytesOf(specialValue) +
          bytesOf(specialShare) + bytesOf(specialPairs) + bytesOf(specialPairBegin) + bytesOf(star) +
          bytesOf(starred) + bytesOf(bandCells) + bytesOf(entryBegin) + bytesOf(entries) + bytesOf(part) +

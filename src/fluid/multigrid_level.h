@@ -43,6 +43,9 @@ enum Chunk : std::uint8_t {
   kRegular = 1,  // all links of all 16 cells are exactly 1
   kEmpty = 2,    // no cell has a link
   kBand = 4,     // within two cells of a solid: swept more often
+  // At an end of a row: all links are exactly 1 but that over the side, where the value is 0.
+  kLeftSide = 8,
+  kRightSide = 16,
 };
 
 /// From which of its four sides a link leaves a block.
@@ -98,13 +101,25 @@ struct Level {
   Floats x, b;        // value and right-hand side: grid, then extra unknowns
   Floats ax, ay, id;  // links and inverse diagonal (0: no unknown there, or a special one): grid
   std::vector<std::uint8_t> chunk;  // ny x chunks
+  // Chunks side by side, of one kind, with the colours in the same lanes of each.
   struct Run {
-    int begin, end;  // cells, multiples of 16
-    bool regular;
+    int begin, end;     // cells, multiples of 16
+    std::uint8_t kind;  // kGeneral, kRegular, or the side beside it
   };
   std::vector<int> runBegin, bandBegin;  // ny + 1
-  std::vector<Run> runs;                 // chunks of one kind side by side, without the empty ones
-  std::vector<Run> bandRuns;             // chunks of the band side by side
+  std::vector<Run> runs;                 // without the empty ones
+  std::vector<Run> bandRuns;             // those of the band, all as general ones
+  // Of rows: bits. Nothing but regular chunks between two sides, no special unknown (and neither in the
+  // middle rows nor in those of a seam); no band in it, nor in the other one of the two that go together;
+  // empty chunks.
+  static constexpr std::uint8_t kPlain = 1, kNoBand = 2, kGaps = 4;
+  std::vector<std::uint8_t> rowKind;
+  struct SideCell {  // at the end of a row: the link over the side, and the inverse diagonal
+    float link = 0, inverse = 0;
+  };
+  // [2 j] at the left side, [2 j + 1] at the right one: beside each other, where the columns of ax and id
+  // would be fetched from afar.
+  std::vector<SideCell> sideCells;
   // Chunks are no mirror images of each other unless they are all full: else the cells of the band in each, a
   // bit for each cell, so that those are. ny x chunks, or empty: all cells of its chunks.
   std::vector<std::uint16_t> bandCells;
@@ -164,6 +179,14 @@ struct Level {
   };
   std::vector<Split> split;
   std::vector<int> child;  // 4 i + row within the block of a primary unknown, ~k of the extra unknown k
+
+  // Two cells of a row, of one colour and linked, are solved as one: the link over each one's diagonal, and
+  // what follows from them.
+  struct Pair {
+    float overA = 0, overB = 0;
+    float scale = 0;  // 1 / (1 - overA overB); 0: not linked, or not swept over rows; -1: half way
+  };
+  std::vector<Pair> middlePairs, seamPairs;  // by row
 
   std::vector<float> middle;  // scratch: what two rows of one colour held before a sweep
 

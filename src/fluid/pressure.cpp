@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fluid/multigrid.h"
+#include "fluid/multigrid_apply.h"
 #include "fluid/multigrid_kernels.h"
 #include "fluid/pressure_flux.h"
 #include "fluid/regions.h"
@@ -13,8 +14,6 @@
 namespace smokebox {
 
 using multigrid::Floats;
-using multigrid::kEmpty;
-using multigrid::kRegular;
 using multigrid::Level;
 
 namespace {
@@ -175,17 +174,15 @@ PressureSolver::Impl::Advance PressureSolver::Impl::advance(float alpha, float b
   const auto apply = [&](int j) {
     float* r = level.b.data();
     const float* p = direction.data();
-    const std::uint8_t* kind = level.chunkRow(j);
     Lanes residual = {}, size = {};
-    for (int c = 0; c < level.chunks; ++c) {
-      if (kind[c] & kEmpty) continue;
-      const std::ptrdiff_t i = level.at(c * kLanes, j);
-      if (large) expect(r + i + level.stride);
-      const Lanes value = load(r + i) - alpha * applyChunk(level, kind[c], p, i);
-      store(r + i, value);
-      residual = multigrid::larger(magnitude(value), residual);
-      if (first) size = multigrid::larger(magnitude(alpha * load(p + i)), size);
-    }
+    multigrid::applyRow(
+        level, direction, j, [&](std::ptrdiff_t i, const Lanes& sum) __attribute__((always_inline)) {
+          if (large) expect(r + i + level.stride);
+          const Lanes value = load(r + i) - alpha * sum;
+          store(r + i, value);
+          residual = multigrid::larger(magnitude(value), residual);
+          if (first) size = multigrid::larger(magnitude(alpha * load(p + i)), size);
+        });
     advances[j] = {multigrid::largestLane(residual), multigrid::largestLane(size)};
   };
   if (alone) {
@@ -275,13 +272,12 @@ PressureSolver::Impl::Overlap PressureSolver::Impl::overlapOfDirection() {
   Level& level = multigrid.finest();
   forRows(pool, static_cast<long>(level.nx) * level.ny, 0, level.ny, [&](int j) {
     Lanes link = {}, slope = {};
-    const std::uint8_t* kind = level.chunkRow(j);
-    for (int c = 0; c < level.chunks; ++c) {
-      if (kind[c] & kEmpty) continue;
-      const std::ptrdiff_t offset = level.at(c * kLanes, j);
-      link += applyChunk(level, kind[c], direction.data(), offset) * load(level.x.data() + offset);
-      slope += load(level.b.data() + offset) * load(direction.data() + offset);
-    }
+    const float *x = level.x.data(), *b = level.b.data(), *p = direction.data();
+    multigrid::applyRow(
+        level, direction, j, [&](std::ptrdiff_t i, const Lanes& sum) __attribute__((always_inline)) {
+          link += sum * load(x + i);
+          slope += load(b + i) * load(p + i);
+        });
     overlaps[j] = {multigrid::sumOfLanes(link), multigrid::sumOfLanes(slope)};
   });
   Overlap total;
