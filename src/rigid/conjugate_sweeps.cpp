@@ -1,5 +1,7 @@
 #include "rigid/conjugate_sweeps.h"
 
+#include <type_traits>
+
 namespace smokebox {
 
 namespace {
@@ -40,7 +42,7 @@ void ConjugateSweeps::remember(const Bodies& bodies, ContactBlocks& blocks, std:
                                std::vector<Contact>& lively) {
   if (bodies_.empty()) list(bodies, blocks, spare, lively);
   impulses_.clear();
-  eachImpulse(blocks, spare, lively, [&](const double* impulse, const auto*, int count) {
+  eachImpulse(blocks, spare, lively, [&](const auto* impulse, const auto*, int count) {
     impulses_.insert(impulses_.end(), impulse, impulse + count);
   });
   velocities_.clear();
@@ -52,7 +54,7 @@ void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::ve
   // The squares of the changes over the effective masses: energies, whatever the masses are.
   double size = 0;
   std::size_t at = 0;
-  eachImpulse(blocks, spare, lively, [&](const double* impulse, const auto* mass, int count) {
+  eachImpulse(blocks, spare, lively, [&](const auto* impulse, const auto* mass, int count) {
     for (int l = 0; l < count; ++l) {
       const double change = impulse[l] - impulses_[at++];
       if (mass[l] > 0) size += change * change / static_cast<double>(mass[l]);
@@ -67,10 +69,10 @@ void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::ve
     std::fill(turnedTo_.begin(), turnedTo_.end(), Motion{});
   }
   at = 0;
-  eachImpulse(blocks, spare, lively, [&](double* impulse, const auto*, int count) {
+  eachImpulse(blocks, spare, lively, [&](auto* impulse, const auto*, int count) {
     for (int l = 0; l < count; ++l, ++at) {
       const double change = impulse[l] - impulses_[at], more = share * direction_[at];
-      impulse[l] += more;
+      impulse[l] = static_cast<std::remove_pointer_t<decltype(impulse)>>(impulse[l] + more);
       direction_[at] = more + change;
     }
   });

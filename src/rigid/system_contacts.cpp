@@ -111,8 +111,8 @@ double RigidSystem::State::sweep(double h, bool first, double enough) {
   double change = 0;
   if (!joints.empty()) change = std::max(change, joints.solve(bodies, h));
   if (!springs.empty()) change = std::max(change, springs.solve(bodies, h));
-  const ContactBlocks::Apart apart{0.5 * h * h * length(gravity), kSeparateShare, kSeparateSpeed * h};
-  change = std::max(change, blocks.solve(bodies, h, first ? &apart : nullptr));
+  const MoveApart apart{0.5 * h * h * length(gravity), kSeparateShare, kSeparateSpeed * h};
+  change = std::max(change, first ? blocks.sweepFirst(bodies, h, apart) : blocks.sweep(bodies));
   change = std::max(change, solve(bodies, spare, enough));
   change = std::max(change, solve(bodies, narrow.lively(), enough));
   return change;
@@ -129,7 +129,7 @@ void RigidSystem::State::sweepRough(double h, double change) {
     for (Contact& contact : *contacts)
       if (contact.change >= place) rough.push_back(&contact);
   for (int more = 0; more < kRoughSweeps && change > enough; ++more) {
-    change = blocks.solveRough(bodies, h, place);
+    change = blocks.sweepRough(bodies, place);
     std::size_t kept = 0;
     for (Contact* contact : rough) {
       change = std::max(change, solve(bodies, *contact));

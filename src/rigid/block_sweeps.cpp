@@ -1,0 +1,298 @@
+#include "rigid/block_sweeps.h"
+
+#include <algorithm>
+
+namespace smokebox {
+
+using motion_lanes::gather;
+using motion_lanes::kNumbers;
+using motion_lanes::scatterAdd;
+
+namespace {
+// A block that parted faster than it needs by so many times what the last sweep changed is left out.
+constexpr int kSpare = 4;
+// Blocks of a colour do not meet: so many are read, solved and written together, and the processor works on
+// several at a time.
+constexpr int kSome = 4;
+constexpr float kFar = 1e30F;  // m/s
+}  // namespace
+
+template <class Number>
+void BlockSweeps<Number>::clear() {
+  blocks_.clear();
+  colourEnds_.clear();
+}
+
+template <class Number>
+void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>& contacts,
+                               const ContactLayout& layout, Number relaxation) {
+  colourEnds_ = layout.colourEnds();
+  blocks_.resize(layout.blocks());
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    fillBlock(blocks_[k], bodies, contacts, layout.inLane().data() + kLanes * k, relaxation);
+}
+
+template <class Number>
+void BlockSweeps<Number>::fillBlock(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts,
+                                    const int* which, Number relaxation) {
+  block = Block{};
+  for (int l = 0; l < kLanes; ++l) {
+    if (which[l] < 0) continue;
+    const Contact& c = contacts[which[l]];
+    block.a[l] = kNumbers * c.a;
+    block.b[l] = kNumbers * c.b;
+    block.count = std::max(block.count, c.count);
+    const InverseMass &a = bodies.inverse[c.a], &b = bodies.inverse[c.b];
+    auto brief = [](double x) { return static_cast<Number>(x); };
+    numbers(block.nx)[l] = brief(c.normal.x);
+    numbers(block.ny)[l] = brief(c.normal.y);
+    numbers(block.friction)[l] = brief(c.friction);
+    numbers(block.inverseA)[l] = brief(a.mass);
+    numbers(block.inertiaA)[l] = brief(a.inertia);
+    numbers(block.inverseB)[l] = brief(b.mass);
+    numbers(block.inertiaB)[l] = brief(b.inertia);
+    const Vec2 tangent = perpendicular(c.normal);
+    for (int p = 0; p < c.count; ++p) {
+      const ContactPoint& from = c.points[p];
+      Point& to = block.points[p];
+      numbers(to.armAN)[l] = brief(cross(from.armA, c.normal));
+      numbers(to.armBN)[l] = brief(cross(from.armB, c.normal));
+      numbers(to.armAT)[l] = brief(cross(from.armA, tangent));
+      numbers(to.armBT)[l] = brief(cross(from.armB, tangent));
+      numbers(to.gap)[l] = brief(from.gap);
+      numbers(to.impulseN)[l] = brief(from.impulseN);
+      numbers(to.impulseT)[l] = brief(from.impulseT);
+      numbers(block.total)[l] -=
+          numbers(to.impulseN)[l];  // which the first sweep counts, but belongs to the step before
+    }
+  }
+  for (int p = 0; p < block.count; ++p) {
+    Point& to = block.points[p];
+    auto mass = [&](Vector armA, Vector armB) {
+      const Vector inverse =
+          block.inverseA + block.inverseB + block.inertiaA * armA * armA + block.inertiaB * armB * armB;
+      return choose(inverse > Vector{}, wide(relaxation) / inverse, Vector{});
+    };
+    to.massN = mass(to.armAN, to.armBN);
+    to.massT = mass(to.armAT, to.armBT);
+    for (int l = 0; l < kLanes; ++l)  // a contact of one point beside one of two
+      if (which[l] >= 0 && contacts[which[l]].count <= p) numbers(to.massN)[l] = numbers(to.massT)[l] = 0;
+  }
+}
+
+template <class Number>
+void BlockSweeps<Number>::warmStart(Bodies& bodies) const {
+  Motion* velocity = bodies.velocity.data();
+  for (const Block& block : blocks_) {
+    Vector px{}, py{}, turnA{}, turnB{};
+    for (int k = 0; k < block.count; ++k) {
+      const Point& p = block.points[k];
+      // Tangent: the normal turned by 90 degrees counterclockwise.
+      px += block.nx * p.impulseN - block.ny * p.impulseT;
+      py += block.ny * p.impulseN + block.nx * p.impulseT;
+      turnA -= p.armAN * p.impulseN + p.armAT * p.impulseT;
+      turnB += p.armBN * p.impulseN + p.armBT * p.impulseT;
+    }
+    scatterAdd(velocity, block.a, -block.inverseA * px, -block.inverseA * py, block.inertiaA * turnA);
+    scatterAdd(velocity, block.b, block.inverseB * px, block.inverseB * py, block.inertiaB * turnB);
+  }
+}
+
+/// Moves the bodies of a block apart where they overlap, on places alone.
+template <class Number>
+void BlockSweeps<Number>::separate(const Block& block, const MoveApart& apart, Motion* moved,
+                                   Relative<Vector>& d) {
+  const Vector cap = wide(static_cast<Number>(apart.most));
+  const Vector share = wide(-static_cast<Number>(apart.share)), inverse = block.inverseA + block.inverseB;
+  Vector sum{}, turnA{}, turnB{};
+  for (int k = 0; k < block.count; ++k) {
+    const Point& p = block.points[k];
+    const Vector gap = p.gap + block.nx * d.x + block.ny * d.y + d.turnB * p.armBN - d.turnA * p.armAN;
+    const Vector overlap = smaller(larger(share * gap, Vector{}), cap) * p.massN;
+    const Vector byA = block.inertiaA * p.armAN * overlap, byB = block.inertiaB * p.armBN * overlap;
+    sum += overlap;
+    turnA -= byA;
+    turnB += byB;
+    d.x += inverse * block.nx * overlap;
+    d.y += inverse * block.ny * overlap;
+    d.turnA -= byA;
+    d.turnB += byB;
+  }
+  const Vector px = block.nx * sum, py = block.ny * sum;
+  scatterAdd(moved, block.a, -block.inverseA * px, -block.inverseA * py, turnA);
+  scatterAdd(moved, block.b, block.inverseB * px, block.inverseB * py, turnB);
+}
+
+/// Begins a sub-step: how fast each point may close; and who overlaps is moved apart.
+template <class Number>
+inline void BlockSweeps<Number>::begin(Block& block, Motion* moved, Number perSecond,
+                                       const MoveApart& apart) {
+  Relative<Vector> d;
+  gather(moved, block.a, block.b, d);
+  const Vector along = block.nx * d.x + block.ny * d.y;
+  Vector deepest{};
+  for (int k = 0; k < block.count; ++k) {
+    Point& p = block.points[k];
+    const Vector gap = p.gap + along + d.turnB * p.armBN - d.turnA * p.armAN;
+    deepest = smaller(deepest, gap);
+    p.allowed = larger(gap, Vector{}) * wide(perSecond);
+    block.total += p.impulseN;  // what the last sub-step came to
+  }
+  if (smallestOf(deepest) < -static_cast<Number>(apart.slop)) separate(block, apart, moved, d);
+}
+
+template <class Number>
+template <int kPoints>
+inline typename BlockSweeps<Number>::Pushes BlockSweeps<Number>::solve(Block& block, Relative<Vector> v) {
+  const Vector nx = block.nx, ny = block.ny;
+  const Vector inverse = block.inverseA + block.inverseB;
+  const Vector givenX = inverse * nx, givenY = inverse * ny;
+  Vector normal{}, tangential{}, turnA{}, turnB{}, largest{};
+  const Vector far = wide<Number>(kFar);
+  Vector least = far;
+  for (int k = 0; k < kPoints; ++k) {
+    Point& p = block.points[k];
+    auto turn = [&](Vector armA, Vector armB, Vector by) {
+      const Vector byA = block.inertiaA * armA * by, byB = block.inertiaB * armB * by;
+      turnA -= byA;
+      turnB += byB;
+      v.turnA -= byA;
+      v.turnB += byB;
+    };
+    const Vector parts = (nx * v.x + ny * v.y) + (v.turnB * p.armBN - v.turnA * p.armAN) + p.allowed;
+    // By differences, which are small: a sum would be rounded as what it bears.
+    const Vector change = larger(-p.massN * parts, -p.impulseN), total = p.impulseN + change;
+    p.impulseN = total;
+    normal += change;
+    v.x += givenX * change;
+    v.y += givenY * change;
+    turn(p.armAN, p.armBN, change);
+    // The change of the velocity: all that was amiss, or less where the contact lets go.
+    const Vector amiss = choose(parts < Vector{}, -parts, parts);
+    largest = larger(largest, choose(change != Vector{}, amiss, Vector{}));
+    least = smaller(least, choose(p.massN > Vector{}, choose(total > Vector{}, Vector{}, parts), far));
+
+    const Vector vt = (nx * v.y - ny * v.x) + (v.turnB * p.armBT - v.turnA * p.armAT);
+    const Vector most = block.friction * total;
+    const Vector slide = smaller(larger(-p.massT * vt, -most - p.impulseT), most - p.impulseT);
+    p.impulseT += slide;
+    tangential += slide;
+    v.x -= givenY * slide;
+    v.y += givenX * slide;
+    turn(p.armAT, p.armBT, slide);
+  }
+  block.spare = smallestOf(least);
+  block.change = largestOf(largest);
+  return {nx * normal - ny * tangential, ny * normal + nx * tangential, turnA, turnB};
+}
+
+template <class Number>
+inline Number BlockSweeps<Number>::solveSome(Block* const* some, int count, Motion* velocity) {
+  Relative<Vector> v[kSome];
+  for (int k = 0; k < count; ++k) gather(velocity, some[k]->a, some[k]->b, v[k]);
+  Number change = 0;
+  for (int k = 0; k < count; ++k) {
+    v[k] = some[k]->count == 2 ? solve<2>(*some[k], v[k]) : solve<1>(*some[k], v[k]);
+    change = std::max(change, some[k]->change);
+  }
+  for (int k = 0; k < count; ++k) {
+    const Block& block = *some[k];
+    const Pushes& by = v[k];
+    scatterAdd(velocity, block.a, -block.inverseA * by.x, -block.inverseA * by.y, by.turnA);
+    scatterAdd(velocity, block.b, block.inverseB * by.x, block.inverseB * by.y, by.turnB);
+  }
+  return change;
+}
+
+template <class Number>
+double BlockSweeps<Number>::sweepFirst(Bodies& bodies, double h, const MoveApart& apart) {
+  const Number perSecond = static_cast<Number>(1 / h);
+  Number result = 0;
+  Block* some[kSome];
+  int k = 0;
+  for (const int end : colourEnds_)
+    while (k < end) {
+      int count = 0;
+      for (; count < kSome && k < end; ++k) {
+        some[count++] = &blocks_[k];
+        begin(blocks_[k], bodies.moved.data(), perSecond, apart);
+      }
+      result = std::max(result, solveSome(some, count, bodies.velocity.data()));
+    }
+  change_ = result;
+  return static_cast<double>(result);
+}
+
+template <class Number>
+double BlockSweeps<Number>::sweep(Bodies& bodies) {
+  Number result = 0;
+  Block* some[kSome];
+  int k = 0;
+  for (const int end : colourEnds_)
+    while (k < end) {
+      int count = 0;
+      for (; count < kSome && k < end; ++k)
+        if (!(blocks_[k].spare > kSpare * change_)) some[count++] = &blocks_[k];
+      result = std::max(result, solveSome(some, count, bodies.velocity.data()));
+    }
+  change_ = result;
+  return static_cast<double>(result);
+}
+
+template <class Number>
+void BlockSweeps<Number>::beginRough(double above) {
+  rough_.clear();
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (static_cast<double>(blocks_[k].change) >= above) rough_.push_back(static_cast<int>(k));
+}
+
+template <class Number>
+double BlockSweeps<Number>::sweepRough(Bodies& bodies, double above) {
+  Number result = 0;
+  Block* some[kSome];
+  int which[kSome];
+  std::size_t next = 0, kept = 0;
+  for (const int end : colourEnds_)
+    while (next < rough_.size() && rough_[next] < end) {
+      int count = 0;
+      for (; count < kSome && next < rough_.size() && rough_[next] < end; ++next) {
+        Block& block = blocks_[rough_[next]];
+        if (block.spare > kSpare * change_) continue;
+        some[count] = &block;
+        which[count++] = rough_[next];
+      }
+      result = std::max(result, solveSome(some, count, bodies.velocity.data()));
+      for (int k = 0; k < count; ++k)
+        if (static_cast<double>(some[k]->change) >= above) rough_[kept++] = which[k];
+    }
+  rough_.resize(kept);
+  change_ = result;
+  return static_cast<double>(result);
+}
+
+template <class Number>
+void BlockSweeps<Number>::read(int place, Contact& contact) const {
+  const Block& block = blocks_[place / kLanes];
+  const int lane = place % kLanes;
+  for (int p = 0; p < contact.count; ++p) {
+    contact.points[p].impulseN = static_cast<double>(numbers(block.points[p].impulseN)[lane]);
+    contact.points[p].impulseT = static_cast<double>(numbers(block.points[p].impulseT)[lane]);
+    contact.total += contact.points[p].impulseN;
+  }
+  contact.total += static_cast<double>(numbers(block.total)[lane]);
+}
+
+template <class Number>
+void BlockSweeps<Number>::drop(int place) {
+  Block& block = blocks_[place / kLanes];
+  const int lane = place % kLanes;
+  numbers(block.total)[lane] = 0;
+  for (Point& p : block.points)
+    for (Vector* of : {&p.massN, &p.massT, &p.impulseN, &p.impulseT}) numbers(*of)[lane] = 0;
+  block.a[lane] = block.b[lane] = 0;
+}
+
+template class BlockSweeps<double>;
+template class BlockSweeps<float>;
+
+}  // namespace smokebox
