@@ -6,7 +6,7 @@ namespace {
 // So few contacts would leave most lanes empty: they are solved one by one.
 constexpr int kFew = 12;
 // More contacts than so many are worked in float32. A stack of 40 boxes leans by its rounding.
-constexpr int kBrief = 3000;
+constexpr int kBrief = 1000;
 // More points than so many are swept but once in a sub-step, and each one gives more than it is asked for:
 // bins of 10,000 overlap less by it. A pyramid of 5,000 boxes, 20,000 points, would not stand.
 constexpr long kMany = 30000;
