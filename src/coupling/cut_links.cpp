@@ -66,10 +66,9 @@ class LinkFinder {
 
   void addSolid(int k, int line, int step, double surface, int copy) {
     const double across = (line + (normal_ ? 0.5 : 0)) * h_;
-    const Vec2 velocity = by_.velocityAt(copy, alongX_ ? Vec2{surface, across} : Vec2{across, surface});
-    const int solid = by_.copies[copy].solid;
-    add(k, line, step, std::fabs(surface - positionOf(k)) / h_, by_.solids[solid].drag,
-        ofU_ ? velocity.x : velocity.y, solid);
+    const CoveredBy::Surface there = by_.at(copy, alongX_ ? Vec2{surface, across} : Vec2{across, surface});
+    add(k, line, step, std::fabs(surface - positionOf(k)) / h_, there.drag,
+        ofU_ ? there.velocity.x : there.velocity.y, there.solid);
   }
 
   void followLine(int line, const LineCover& cover) {
@@ -136,9 +135,24 @@ class LinkFinder {
       const bool side =
           normal_ && !periodic_ && (k == 0 || k == cells_) && (k == 0 ? first_ == 1 : last_ < cells_);
       if (met || side) continue;
-      const int solid = by_.copies[part.solid].solid;
-      add(from, line, step, 1, by_.solids[solid].drag, wallAt(k, line), solid);
+      const CoveredBy::Surface there = shutFace(&part);
+      add(from, line, step, 1, there.drag, wallAt(k, line), there.solid);
     }
+  }
+
+  /// The drag is the mean of all parts of the face, of which this is the first.
+  CoveredBy::Surface shutFace(const ShutPart* part) const {
+    const ShutPart* const end = by_.geometry.shut.data() + by_.geometry.shut.size();
+    CoveredBy::Surface mean = by_.at(*part);
+    const double first = mean.drag;
+    double weight = part->weight * (part->hi - part->lo), more = 0;
+    for (const ShutPart* next = part + 1; next != end && sameFace(*part, *next); ++next) {
+      const double own = next->weight * (next->hi - next->lo);
+      weight += own;
+      more += own * (by_.at(*next).drag - first);
+    }
+    mean.drag += more / weight;
+    return mean;
   }
 
   Side sideAcross(int line) const {

@@ -103,29 +103,6 @@ void SolidsOnGrid::placeCopies(const std::vector<MovingSolid>& solids, const Bou
   }
 }
 
-void SolidsOnGrid::findPartners(const std::vector<MovingSolid>& solids) {
-  const CoverWork& work = cover_.work;
-  const int count = static_cast<int>(copies_.size());
-  partners_.resize(count);
-  for (std::vector<int>& list : partners_) list.clear();
-  const auto still = [](const MovingSolid& s) { return s.velocity == Vec2{} && s.spin == 0; };
-  const auto alike = [&](int a, int b) {
-    const MovingSolid &p = solids[copies_[a].solid], &q = solids[copies_[b].solid];
-    return copies_[a].solid == copies_[b].solid || (still(p) && still(q));
-  };
-  for (int k = 0; k < count; ++k) {
-    if (work.group[k] == k) continue;  // the first of a group: as the other one below
-    const double* a = &work.boxes[4 * k];
-    for (int m = 0; m < k; ++m) {
-      if (work.group[m] != work.group[k] || alike(k, m)) continue;
-      const double* b = &work.boxes[4 * m];
-      if (a[0] > b[2] || b[0] > a[2] || a[1] > b[3] || b[1] > a[3]) continue;
-      partners_[k].push_back(m);
-      partners_[m].push_back(k);
-    }
-  }
-}
-
 void SolidsOnGrid::cover(const std::vector<MovingSolid>& solids, bool shapesMoved, Boundary& boundary) {
   const Grid& grid = boundary.grid;
   if (!shaped(boundary.wallU, grid)) {
@@ -137,8 +114,11 @@ void SolidsOnGrid::cover(const std::vector<MovingSolid>& solids, bool shapesMove
     coverGrid(grid, outlines_, cover_, {boundary.periodicX(), boundary.periodicY()});
     setShares(cover_, boundary);
   }
-  findPartners(solids);
-  const CoveredBy by{solids, copies_, cover_, partners_, grid.h};
+  mixed_.find(grid, cover_.work, static_cast<int>(copies_.size()), [&](int a, int b) {
+    const MovingSolid &p = solids[copies_[a].solid], &q = solids[copies_[b].solid];
+    return p.velocity == q.velocity && p.spin == 0 && q.spin == 0 && p.drag == q.drag;
+  });
+  const CoveredBy by{solids, copies_, cover_, mixed_, grid};
   setWallVelocities(by, boundary, weightsU_, weightsV_);
   findCutLinks(by, true, boundary, boundary.linksU);
   findCutLinks(by, false, boundary, boundary.linksV);

@@ -19,6 +19,7 @@
 #pragma once
 #include <vector>
 
+#include "coupling/mixed_groups.h"
 #include "fluid/boundary.h"
 #include "fluid/viscosity.h"
 #include "geometry/coverage.h"
@@ -65,12 +66,11 @@ class SolidsOnGrid {
 
  private:
   void placeCopies(const std::vector<MovingSolid>& solids, const Boundary& boundary);
-  void findPartners(const std::vector<MovingSolid>& solids);
 
   GridCover cover_;
   std::vector<Copy> copies_;
-  std::vector<SolidOutline> outlines_;      // of the copies
-  std::vector<std::vector<int>> partners_;  // of each copy: those that it may overlap and that move otherwise
+  std::vector<SolidOutline> outlines_;  // of the copies
+  MixedGroups mixed_;                   // among the copies
   FaceWeights weightsU_, weightsV_;
   std::vector<CutLink> sorted_;
   std::vector<int> rowStart_;

@@ -4,53 +4,6 @@
 #include <cmath>
 
 namespace smokebox {
-
-namespace {
-
-/// The nearest whole multiple of 2^-36 of `largest`: where a sum of things that large all but adds up to 0,
-/// the rounding of positions would show, and part mirror images.
-double rounded(double value, double largest) {
-  if (!(largest > 1e-200)) return value;
-  const double quantum = std::ldexp(1.0, std::ilogb(largest) - 36);
-  return std::nearbyint(value / quantum) * quantum;
-}
-
-}  // namespace
-
-// Inside the copy, or next to its surface.
-bool CoveredBy::covers(int copy, Vec2 p) const {
-  const double near = 1e-4 * h;
-  const Vec2 at = p - copies[copy].shift;
-  bool inside = false;
-  for (const Outline& outline : solids[copies[copy].solid].outlines)
-    for (std::size_t k = 0; k < outline.size(); ++k) {
-      const Vec2 a = outline[k] - at, along = outline[k + 1 < outline.size() ? k + 1 : 0] - outline[k];
-      const double size = dot(along, along), t = size > 0 ? std::clamp(-dot(a, along) / size, 0.0, 1.0) : 0;
-      const Vec2 away = a + t * along;
-      if (dot(away, away) < near * near) return true;
-      if ((a.y > 0) != (a.y + along.y > 0) && a.x - a.y / along.y * along.x > 0) inside = !inside;
-    }
-  return inside;
-}
-
-Vec2 CoveredBy::velocityAt(int copy, Vec2 p) const {
-  Vec2 sum;
-  double largest = 0;
-  int count = 0;
-  const auto add = [&](int k) {
-    const MovingSolid& solid = solids[copies[k].solid];
-    const Vec2 at = p - copies[k].shift, turns = solid.spin * (at - solid.origin);
-    sum = sum + solid.velocityAt(at);
-    largest = std::max({largest, std::fabs(solid.velocity.x), std::fabs(solid.velocity.y), std::fabs(turns.x),
-                        std::fabs(turns.y), std::fabs(solid.spin) * h});
-    ++count;
-  };
-  add(copy);
-  for (const int k : partners[copy])
-    if (covers(k, p)) add(k);
-  return {rounded(sum.x / count, largest), rounded(sum.y / count, largest)};
-}
-
 namespace {
 
 constexpr double kAlike = 1e-9;  // of h
@@ -75,8 +28,9 @@ class FaceVelocities {
     for (const ShutPart& part : by_.geometry.shut) {
       if (part.xFace != xFaces_) continue;
       const int line = xFaces_ ? part.i : part.j, face = xFaces_ ? part.j : part.i;
-      addPart(line, face, part.lo, part.hi, part.solid, part.other);
-      if (joined && line == 0) addPart(lines_ - 1, face, part.lo, part.hi, part.solid, part.other);
+      const Vec2 velocity = by_.at(part).velocity;
+      addPart(line, face, part.lo, part.hi, velocity, part.weight);
+      if (joined && line == 0) addPart(lines_ - 1, face, part.lo, part.hi, velocity, part.weight);
     }
   }
 
@@ -86,25 +40,23 @@ class FaceVelocities {
   }
 
   void addInterval(int line, const CoveredInterval& interval) {
-    const int first = std::max(0, static_cast<int>(std::floor(std::max(interval.lo, -h_) / h_)));
-    for (int face = first; face < faces_ && face * h_ < interval.hi; ++face) {
+    const int begin = std::max(0, static_cast<int>(std::floor(std::max(interval.lo, -h_) / h_)));
+    for (int face = begin; face < faces_ && face * h_ < interval.hi; ++face) {
       const double lo = std::max(interval.lo, face * h_), hi = std::min(interval.hi, (face + 1) * h_);
       if (!(hi > lo)) continue;
       const double beyond = (lo + hi) - (interval.lo + interval.hi);  // of the interval's middle, twice
-      addPart(line, face, lo, hi, beyond < kAlike * h_ ? interval.solidLo : interval.solidHi,
-              beyond > -kAlike * h_ ? interval.solidHi : interval.solidLo);
+      const int first = beyond < kAlike * h_ ? interval.solidLo : interval.solidHi,
+                second = beyond > -kAlike * h_ ? interval.solidHi : interval.solidLo;
+      const double middle = 0.5 * (lo + hi), across = line * h_;
+      const Vec2 place = xFaces_ ? Vec2{across, middle} : Vec2{middle, across};
+      addPart(line, face, lo, hi, by_.at(first, second, place).velocity);
     }
   }
 
-  /// Closed by a copy, or by two alike.
-  void addPart(int line, int face, double lo, double hi, int copy, int other) {
-    const double middle = 0.5 * (lo + hi), across = line * h_;
-    const Vec2 place = xFaces_ ? Vec2{across, middle} : Vec2{middle, across};
-    Vec2 velocity = by_.velocityAt(copy, place);
-    if (other != copy) velocity = 0.5 * (velocity + by_.velocityAt(other, place));
+  void addPart(int line, int face, double lo, double hi, Vec2 velocity, double weight = 1) {
     const double normal = xFaces_ ? velocity.x : velocity.y;
     float& wall = at(wall_, line, face);
-    const double share = (hi - lo) / h_;
+    const double share = weight * (hi - lo) / h_;
     if (share > 1 - 1e-9 && line > 0 && line < lines_ - 1) {  // nothing else closes this face
       wall = static_cast<float>(normal);
       return;

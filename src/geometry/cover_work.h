@@ -33,6 +33,16 @@ struct LabelledOutline {
   std::vector<int> edgeSolid;
 };
 
+/// A part of a face that is shut though no solid lies there: it leads only to the lesser part of a cell.
+struct ShutPart {
+  bool xFace = true;
+  int i = 0, j = 0;
+  double lo = 0, hi = 0;                        // metres along the face's line
+  int solid = -1, other = -1;                   // whose surface cuts the cell: where it begins, where it ends
+  bool solidAtEnd = false, otherAtEnd = false;  // of joined sides: they lie at the other one
+  double weight = 1;                            // of several that shut the same stretch
+};
+
 struct CoverWork {
   std::vector<LabelledOutline> outlines;  // grown a little, merged where solids may overlap
   int outlineCount = 0;                   // how many of them are in use; the others keep their memory
@@ -65,6 +75,8 @@ struct CoverWork {
   std::vector<int> arcStart;  // by place in `cells`, one more at the end
   std::vector<int> keptPart;  // by place in `cells`; -1: none
   int partCount = 0;
+  std::vector<ShutPart> settled;
+  std::vector<double> cuts;  // of one face
   std::vector<int> sortedCells, regionRoot, regionLabel, wideRowStart;
   std::vector<RegionMap::Run> wideRuns;
 };

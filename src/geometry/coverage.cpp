@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "geometry/cell_parts.h"
 #include "geometry/cover_outlines.h"
@@ -177,11 +179,33 @@ void forCells(const CoveredInterval& interval, double h, int n, Part&& part) {
   }
 }
 
+/// Takes what is closed of a face from its share: in float64, where the order of the parts, which is not the
+/// mirror image's, is all one.
+class ShareOfFace {
+ public:
+  /// The parts of one face come one after the other.
+  void take(float& open, double share) {
+    if (&open != open_) {
+      open_ = &open;
+      left_ = open;
+    }
+    left_ -= share;
+    open = std::max(0.0f, static_cast<float>(left_));
+  }
+
+ private:
+  const float* open_ = nullptr;
+  double left_ = 0;
+};
+
 void closeCoveredFaces(const Grid& grid, GridCover& cover) {
   const float perMetre = static_cast<float>(1 / grid.h);
+  ShareOfFace face;
   auto close = [&](float& open, double lo, double hi) {
-    open =
-        hi - lo >= grid.h * (1 - 1e-9) ? 0.0f : std::max(0.0f, open - static_cast<float>(hi - lo) * perMetre);
+    if (hi - lo >= grid.h * (1 - 1e-9))
+      open = 0;
+    else
+      face.take(open, static_cast<float>(hi - lo) * perMetre);
   };
   for (int i = 0; i <= grid.nx; ++i)
     for (const CoveredInterval& interval : cover.alongY[2 * i])
@@ -204,34 +228,61 @@ void closeCoveredCells(const Grid& grid, GridCover& cover) {
     }
 }
 
+bool sameSolids(const ShutPart& a, const ShutPart& b) {
+  const auto first = [](const ShutPart& p) { return std::pair(p.solid, p.solidAtEnd); };
+  const auto second = [](const ShutPart& p) { return std::pair(p.other, p.otherAtEnd); };
+  return (first(a) == first(b) && second(a) == second(b)) || (first(a) == second(b) && second(a) == first(b));
+}
+
+/// The parts of one face: of a stretch that several shut all count alike.
+void settleFace(const ShutPart* begin, const ShutPart* end, double least, std::vector<double>& cuts,
+                std::vector<ShutPart>& settled) {
+  cuts.clear();
+  for (const ShutPart* part = begin; part != end; ++part) cuts.insert(cuts.end(), {part->lo, part->hi});
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t k = 1; k < cuts.size(); ++k) {
+    const double lo = cuts[k - 1], hi = cuts[k];
+    if (!(hi - lo > least)) continue;
+    const std::size_t first = settled.size();
+    bool alike = true;
+    for (const ShutPart* part = begin; part != end; ++part) {
+      if (part->lo > lo || part->hi < hi) continue;
+      alike = alike && (settled.size() == first || sameSolids(settled[first], *part));
+      settled.push_back(*part);
+      settled.back().lo = lo;
+      settled.back().hi = hi;
+    }
+    if (alike && settled.size() > first) settled.resize(first + 1);
+    for (std::size_t m = first; m < settled.size(); ++m)
+      settled[m].weight = 1.0 / static_cast<double>(settled.size() - first);
+  }
+}
+
 /// Both cells of a face may have shut the same part; joined sides are one face.
 void settleShutParts(const Grid& grid, JoinedSides joined, GridCover& cover) {
   for (ShutPart& part : cover.shut) {
-    if (joined.x && part.xFace && part.i == grid.nx) part.i = 0;
-    if (joined.y && !part.xFace && part.j == grid.ny) part.j = 0;
+    int& line = part.xFace ? part.i : part.j;
+    if (!(part.xFace ? joined.x : joined.y) || line != (part.xFace ? grid.nx : grid.ny)) continue;
+    line = 0;
+    part.solidAtEnd = part.otherAtEnd = true;
   }
   auto place = [](const ShutPart& p) { return std::make_tuple(!p.xFace, p.j, p.i); };
   std::sort(cover.shut.begin(), cover.shut.end(), [&](const ShutPart& a, const ShutPart& b) {
     return std::make_tuple(place(a), a.lo, a.hi, a.solid) < std::make_tuple(place(b), b.lo, b.hi, b.solid);
   });
-  std::size_t kept = 0;
-  for (const ShutPart& part : cover.shut) {
-    ShutPart next = part;
-    if (kept > 0 && place(cover.shut[kept - 1]) == place(part)) {
-      ShutPart& last = cover.shut[kept - 1];
-      const double near = 2 * kGrowth * grid.h;
-      if (std::fabs(last.lo - part.lo) < near && std::fabs(last.hi - part.hi) < near &&
-          last.other == last.solid)
-        last.other = part.solid;
-      next.lo = std::max(next.lo, last.hi);
-    }
-    if (next.hi - next.lo > 1e-9 * grid.h) cover.shut[kept++] = next;
+  std::vector<ShutPart>& settled = cover.work.settled;
+  settled.clear();
+  for (std::size_t k = 0; k < cover.shut.size();) {
+    std::size_t end = k + 1;
+    while (end < cover.shut.size() && place(cover.shut[end]) == place(cover.shut[k])) ++end;
+    settleFace(cover.shut.data() + k, cover.shut.data() + end, 1e-9 * grid.h, cover.work.cuts, settled);
+    k = end;
   }
-  cover.shut.resize(kept);
-  for (const ShutPart& part : cover.shut) {
-    float& open = part.xFace ? cover.openX(part.i, part.j) : cover.openY(part.i, part.j);
-    open = std::max(0.0f, open - static_cast<float>((part.hi - part.lo) / grid.h));
-  }
+  cover.shut.swap(settled);
+  ShareOfFace face;
+  for (const ShutPart& part : cover.shut)
+    face.take(part.xFace ? cover.openX(part.i, part.j) : cover.openY(part.i, part.j),
+              part.weight * static_cast<float>((part.hi - part.lo) / grid.h));
 }
 
 void snapFaces(const Grid& grid, JoinedSides joined, GridCover& cover) {

@@ -36,22 +36,13 @@ struct SolidOutline {
       outlines;  // world coordinates; they do not overlap (outlinesOf a shape merges its parts)
 };
 
-/// A part of a face that is shut though no solid lies there: it leads only to the lesser part of a cell.
-struct ShutPart {
-  bool xFace = true;
-  int i = 0, j = 0;
-  double lo = 0, hi = 0;  // metres along the face's line
-  int solid = -1,
-      other = -1;  // whose surface cuts the cell: where it begins, where it ends; or in either cell
-};
-
 struct GridCover {
   /// Lines y = k h/2, k = 0..2 ny (along x), and x = k h/2, k = 0..2 nx (along y).
   std::vector<LineCover> alongX, alongY;
   /// Open share of faces (0..1) and of cells; shares of faces under 1e-3 are 0, over 1 - 1e-3 are 1. Margins:
   /// 0.
   Field openX, openY, volume;
-  /// Sorted by kind (x first), j, i, lo; disjoint.
+  /// Sorted by kind (x first), j, i, lo; disjoint, or the same stretch.
   std::vector<ShutPart> shut;
   /// The regions that the solids part from each other.
   RegionMap regions;

@@ -5,6 +5,7 @@
 #include <polyclipping/clipper.hpp>
 
 #include "base/errors.h"
+#include "geometry/snap_outlines.h"
 
 namespace smokebox {
 
@@ -50,7 +51,6 @@ std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, doubl
   const bool done =
       clipper.Execute(ClipperLib::ctUnion, paths, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
   checkInvariant(done, "the union of polygons can be found");
-  ClipperLib::CleanPolygons(paths);
 
   std::vector<Outline> result;
   for (const ClipperLib::Path& path : paths) {
@@ -62,6 +62,7 @@ std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, doubl
           {centre.x + quantum * static_cast<double>(p.X), centre.y + quantum * static_cast<double>(p.Y)});
     result.push_back(std::move(outline));
   }
+  snapOutlines(outlines, quantum, result);
   return result;
 }
 

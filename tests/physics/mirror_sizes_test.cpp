@@ -173,6 +173,21 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"free disks", 64, 80, {{kSmallDisk, 0.2, 0.7}}, "no-slip", "open", "1/100", true}));
 
 INSTANTIATE_TEST_SUITE_P(
+    Overlapping, MirrorSizes,
+    testing::Values(
+        Case{"fans that cut", 64, 80, {{kBlade, 0.1, 0.7, 10, 180}}},
+        Case{"fans that cut", 37, 53, {{kBlade, 0.1, 0.7, 10, 180}}},
+        Case{"fans that cut", 75, 100, {{kBlade, 0.1, 0.7, 10, 180}}},
+        Case{"fans that cut", 64, 80, {{kBlade, 0.12, 0.7, 10, 180}}},
+        Case{"fans that cut", 64, 80, {{kBlade, 0.14, 0.7, 10, 180}}},
+        Case{"fans that cut", 128, 160, {{kBlade, 0.1, 0.7, 10, 180}}},
+        Case{"thin fans that cut", 64, 80, {{kSheet, 0.1, 0.7, 10, 180}}},
+        Case{"thin fans that cut", 75, 100, {{kSheet, 0.1, 0.7, 10, 180}}},
+        Case{"turning blocks", 64, 80, {{kBlock, 0.07, 0.7, 0, 90}}},
+        Case{"blocks that slide into each other", 64, 80, {{kBlock, 0.1, 0.7, 0, 0, "0.075*sin(4*t)"}}},
+        Case{"turning disks", 64, 80, {{kSmallDisk, 0.05, 0.7, 0, 90}}}));
+
+INSTANTIATE_TEST_SUITE_P(
     Walls, MirrorSizes,
     testing::Values(Case{"closed", 96, 100, {{kDisk, 0, 0.7}}, "slip", "slip"},
                     Case{"closed", 75, 75, {{kDisk, 0, 0.7}}, "slip", "slip"},
