@@ -27,16 +27,19 @@ void growOutline(const Outline& outline, double distance, Outline& grown) {
   }
 }
 
-std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, double quantum) {
+namespace {
+
+enum class Corners { cleaned, all };
+
+/// On a grid of integers, about the middle of all.
+std::vector<Outline> unionOnGrid(const std::vector<Outline>& outlines, double quantum, Corners corners) {
   Vec2 lo{1e300, 1e300}, hi{-1e300, -1e300};
   for (const Outline& outline : outlines)
     for (Vec2 p : outline) {
       lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
       hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
     }
-  const double extent = std::max(hi.x - lo.x, hi.y - lo.y);
-  if (!(extent > 0)) return {};
-  quantum = std::max(quantum, extent * 0x1p-40);
+  if (!(hi.x > lo.x || hi.y > lo.y)) return {};
   const Vec2 centre = 0.5 * (lo + hi);  // rounding is symmetric about it
 
   ClipperLib::Clipper clipper;
@@ -51,6 +54,7 @@ std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, doubl
   const bool done =
       clipper.Execute(ClipperLib::ctUnion, paths, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
   checkInvariant(done, "the union of polygons can be found");
+  if (corners == Corners::cleaned) ClipperLib::CleanPolygons(paths);
 
   std::vector<Outline> result;
   for (const ClipperLib::Path& path : paths) {
@@ -62,24 +66,36 @@ std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, doubl
           {centre.x + quantum * static_cast<double>(p.X), centre.y + quantum * static_cast<double>(p.Y)});
     result.push_back(std::move(outline));
   }
-  snapOutlines(outlines, quantum, result);
   return result;
 }
 
-std::vector<Outline> merged(const std::vector<Outline>& outlines) {
-  if (outlines.size() < 2) return outlines;
+double extentOf(const std::vector<Outline>& outlines) {
   Vec2 lo{1e300, 1e300}, hi{-1e300, -1e300};
   for (const Outline& outline : outlines)
     for (Vec2 p : outline) {
       lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
       hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
     }
+  return std::max({hi.x - lo.x, hi.y - lo.y, 0.0});
+}
+
+}  // namespace
+
+std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, double near) {
+  const double quantum = std::max(near, extentOf(outlines) * 0x1p-40);
+  std::vector<Outline> result = unionOnGrid(outlines, quantum, Corners::all);
+  snapOutlines(outlines, quantum, result);
+  return result;
+}
+
+std::vector<Outline> merged(const std::vector<Outline>& outlines) {
+  if (outlines.size() < 2) return outlines;
   // Parts that are meant to touch may miss each other by a rounding: grown by two quanta they overlap, and
   // the seam is gone when the result is shrunk again.
-  const double quantum = std::max(hi.x - lo.x, hi.y - lo.y) * 0x1p-30;
+  const double quantum = extentOf(outlines) * 0x1p-30;
   std::vector<Outline> grown(outlines.size());
   for (std::size_t k = 0; k < outlines.size(); ++k) growOutline(outlines[k], 2 * quantum, grown[k]);
-  std::vector<Outline> result = unionOfOutlines(grown, quantum);
+  std::vector<Outline> result = unionOnGrid(grown, quantum, Corners::cleaned);
   for (Outline& outline : result) {
     const Outline wide = outline;
     growOutline(wide, -2 * quantum, outline);

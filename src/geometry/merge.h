@@ -11,8 +11,9 @@ namespace smokebox {
 /// distances far smaller than the edges: nothing is done about edges that vanish.
 void growOutline(const Outline& outline, double distance, Outline& grown);
 
-/// Outlines of the union; coordinates are rounded to about `quantum` metres (never finer than 2^-40 of the
-/// extent). Outer outlines come out counterclockwise, holes clockwise.
-std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, double quantum);
+/// Outlines of the union. What is nearer to each other than about `near` metres (never less than 2^-40 of the
+/// extent) may become one; else corners are where they are (snap_outlines.h). Outer outlines come out
+/// counterclockwise, holes clockwise.
+std::vector<Outline> unionOfOutlines(const std::vector<Outline>& outlines, double near);
 
 }  // namespace smokebox

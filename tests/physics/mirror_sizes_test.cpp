@@ -57,6 +57,7 @@ std::string sceneOf(const Case& c, bool upright) {
                ", angle: " + std::to_string(angle);
       if (o.spin != 0 && !c.free) scene += ", motion: {spin: " + std::to_string(turn * o.spin) + "}";
       if (o.spin != 0 && c.free) scene += ", spin: " + std::to_string(turn * o.spin);
+      if (c.free) scene += ", ignore: all";  // and overlap
       if (o.moves) {
         const std::string across = std::to_string(0.5 + side * o.across) + "+(" + std::to_string(side) +
                                    ")*(" + o.moves + ")",
@@ -177,15 +178,38 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Case{"fans that cut", 64, 80, {{kBlade, 0.1, 0.7, 10, 180}}},
         Case{"fans that cut", 37, 53, {{kBlade, 0.1, 0.7, 10, 180}}},
-        Case{"fans that cut", 75, 100, {{kBlade, 0.1, 0.7, 10, 180}}},
-        Case{"fans that cut", 64, 80, {{kBlade, 0.12, 0.7, 10, 180}}},
-        Case{"fans that cut", 64, 80, {{kBlade, 0.14, 0.7, 10, 180}}},
+        Case{"fans that cut", 75, 100, {{kBlade, 0.12, 0.7, 10, 180}}},
         Case{"fans that cut", 128, 160, {{kBlade, 0.1, 0.7, 10, 180}}},
+        Case{"fans whose tips cut", 64, 80, {{kBlade, 0.14, 0.7, 10, 180}}},
+        Case{"fans across the walls", 64, 80, {{kBlade, 0.4, 0.7, 10, 180}}},
         Case{"thin fans that cut", 64, 80, {{kSheet, 0.1, 0.7, 10, 180}}},
         Case{"thin fans that cut", 75, 100, {{kSheet, 0.1, 0.7, 10, 180}}},
         Case{"turning blocks", 64, 80, {{kBlock, 0.07, 0.7, 0, 90}}},
+        Case{"turning disks", 64, 80, {{kSmallDisk, 0.05, 0.7, 0, 90}}},
         Case{"blocks that slide into each other", 64, 80, {{kBlock, 0.1, 0.7, 0, 0, "0.075*sin(4*t)"}}},
-        Case{"turning disks", 64, 80, {{kSmallDisk, 0.05, 0.7, 0, 90}}}));
+        Case{"blocks that slide into each other", 75, 100, {{kBlock, 0.1, 0.7, 0, 0, "0.075*sin(4*t)"}}},
+        Case{"leaning blades that slide", 64, 80, {{kBlade, 0.1, 0.7, 25, 0, "0.1*sin(6*t)", "0.05*t"}}},
+        Case{"plates along each other", 75, 80, {{kSheet, 0.12, 0.7, 0, 0, "0.1*sin(6*t)"}}},
+        Case{"fans and a press",
+             75,
+             100,
+             {{kBlade, 0.12, 0.7, 25, 180}, {kBlock, 0, 0.7, 0, 0, "0", "0.1*sin(5*t)"}}},
+        Case{"fans around a disk", 101, 131, {{kBlade, 0.12, 0.7, 25, -120}, {kDisk, 0, 0.75}}},
+        Case{"four thin blades", 90, 110, {{kSheet, 0.1, 0.7, 25, 180}, {kSheet, 0.15, 0.65, -40, -90}}},
+        Case{"a box of plates that close it",
+             75,
+             80,
+             {{kPlate, 0, 0.6}, {kPlate, 0, 0.8}, {kUprightPlate, 0.19, 0.7, 0, 0, "0.1*sin(5*t)"}}},
+        Case{"turning blocks across periodic sides", 64, 80, {{kBlock, 0.45, 0.7, 0, 90}}, "periodic"},
+        Case{"thin fans across periodic sides", 75, 80, {{kSheet, 0.4, 0.7, 10, 180}}, "periodic", "slip"},
+        Case{"free disks",
+             64,
+             80,
+             {{kSmallDisk, 0.05, 0.7}, {kDisk, 0.02, 0.6}},
+             "no-slip",
+             "open",
+             "1/100",
+             true}));
 
 INSTANTIATE_TEST_SUITE_P(
     Walls, MirrorSizes,

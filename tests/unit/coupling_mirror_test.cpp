@@ -201,24 +201,14 @@ Scene sceneOf(Random& random) {
 
 TEST(SolidsOnGridMirror, WhatOverlapsIsItsOwnImage) {
   // Truth: a mirrored set of solids has mirrored shares, velocities and links; not a bit differs.
-  int failed = 0;
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = 0; seed < 1500; ++seed) {
     Random random(seed);
     const Scene scene = sceneOf(random);
     for (const bool upright : {true, false}) {
       const std::string off = difference(scene, upright);
-      failed += !off.empty();
-      if (getenv("KINDS") && !off.empty()) {
-        bool g = off.find("open") != off.npos || off.find("vol") != off.npos,
-             w = off.find("wall") != off.npos;
-        printf("KIND %u %d %s%s%s\n", seed, upright, g ? "geo " : "", w ? "wall " : "",
-               off.find("links") != off.npos ? "links" : "");
-      }
-      if (!off.empty() && failed < 10)
-        ADD_FAILURE() << "scene " << seed << (upright ? " upright\n" : " aside\n") << off;
+      ASSERT_TRUE(off.empty()) << "scene " << seed << (upright ? ", upright\n" : ", aside\n") << off;
     }
   }
-  EXPECT_EQ(failed, 0);
 }
 
 }  // namespace
