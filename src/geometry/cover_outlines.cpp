@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/merge.h"
+#include "geometry/snap_outlines.h"
 
 namespace smokebox {
 namespace {
@@ -58,40 +59,52 @@ double distanceSquared(Vec2 p, Vec2 a, Vec2 b) {
 }
 
 /// Finds whose edge a point of the merged outline lies on. Neighbours on the merged outline mostly are
-/// neighbours on the original one: looked at first.
+/// neighbours on the original one: looked at first. Then come the outlines whose boxes reach there.
 class EdgeFinder {
  public:
   EdgeFinder(const std::vector<LabelledOutline>& originals, double near)
-      : originals_(originals), near_(near * near) {}
+      : originals_(originals), near_(near) {
+    for (const LabelledOutline& original : originals) boxes_.push_back(boxOf(original.points));
+  }
 
   int solidAt(Vec2 p) {
     if (originals_.empty()) return -1;
     const int edges = static_cast<int>(originals_[outline_].points.size());
     for (int step : {0, 1, -1}) {
       const int edge = (edge_ + step + edges) % edges;
-      if (distanceTo(outline_, edge, p) > near_) continue;
+      if (distanceTo(outline_, edge, p) > near_ * near_) continue;
       edge_ = edge;
       return originals_[outline_].edgeSolid[edge];
     }
-    double best = 1e300;
-    for (int o = 0; o < static_cast<int>(originals_.size()); ++o)
-      for (int e = 0; e < static_cast<int>(originals_[o].points.size()); ++e) {
-        const double d = distanceTo(o, e, p);
-        if (d >= best) continue;
-        best = d;
-        outline_ = o;
-        edge_ = e;
-      }
+    if (!findNearest(p, near_)) findNearest(p, 1e150);
     return originals_[outline_].edgeSolid[edge_];
   }
 
  private:
+  bool findNearest(Vec2 p, double within) {
+    double best = within * within;
+    bool found = false;
+    for (int o = 0; o < static_cast<int>(originals_.size()); ++o) {
+      if (!boxes_[o].reaches(p, within)) continue;
+      for (int e = 0; e < static_cast<int>(originals_[o].points.size()); ++e) {
+        const double d = distanceTo(o, e, p);
+        if (d >= best) continue;
+        best = d;
+        found = true;
+        outline_ = o;
+        edge_ = e;
+      }
+    }
+    return found;
+  }
+
   double distanceTo(int outline, int edge, Vec2 p) const {
     const Outline& points = originals_[outline].points;
     return distanceSquared(p, points[edge],
                            points[edge + 1 < static_cast<int>(points.size()) ? edge + 1 : 0]);
   }
   const std::vector<LabelledOutline>& originals_;
+  std::vector<OutlineBox> boxes_;
   double near_;
   int outline_ = 0, edge_ = 0;
 };

@@ -12,39 +12,44 @@ constexpr double kParallel = 1e-12;       // square of the sine of the angle bet
 class Snapper {
  public:
   Snapper(const std::vector<Outline>& originals, double spacing) : originals_(originals), spacing_(spacing) {
-    for (const Outline& outline : originals) {
-      corners_.insert(corners_.end(), outline.begin(), outline.end());
-      Box box{{1e300, 1e300}, {-1e300, -1e300}};
-      for (Vec2 p : outline) {
-        box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y)};
-        box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y)};
-      }
-      boxes_.push_back(box);
+    for (int o = 0; o < static_cast<int>(originals.size()); ++o) {
+      boxes_.push_back(boxOf(originals[o]));
+      for (int k = 0; k < static_cast<int>(originals[o].size()); ++k)
+        corners_.push_back({originals[o][k], o, k});
     }
-    std::sort(corners_.begin(), corners_.end(),
-              [](Vec2 a, Vec2 b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) {
+      return a.at.x != b.at.x ? a.at.x < b.at.x : a.at.y < b.at.y;
+    });
   }
 
-  Vec2 snapped(Vec2 p) const {
+  Vec2 snapped(Vec2 p) {
     const double near = kCorner * spacing_;
-    Vec2 sum;  // of the corners there, from p
+    // Mostly it is the one beside the last on the same outline.
+    const Outline& last = originals_[outline_];
+    const int n = static_cast<int>(last.size());
+    for (const int k : {(corner_ + 1) % n, (corner_ + n - 1) % n})
+      if (std::fabs(last[k].x - p.x) <= near && std::fabs(last[k].y - p.y) <= near) {
+        corner_ = k;
+        return last[k];
+      }
+    Vec2 sum;
     int count = 0;
     for (auto c = std::lower_bound(corners_.begin(), corners_.end(), p.x - near,
-                                   [](Vec2 a, double x) { return a.x < x; });
-         c != corners_.end() && c->x <= p.x + near; ++c)
-      if (std::fabs(c->y - p.y) <= near) {
-        if (count++ == 0)
-          sum = *c;
-        else
-          sum = sum + *c;
-      }
+                                   [](const Corner&a, double x) { return a.at.x < x; });
+         c != corners_.end() && c->at.x <= p.x + near; ++c) {
+      if (std::fabs(c->at.y - p.y) > near) continue;
+      sum = count++ == 0 ? c->at : sum + c->at;
+      outline_ = c->outline;
+      corner_ = c->corner;
+    }
     if (count > 0) return (1.0 / count) * sum;
     return p + toEdges(p);
   }
 
  private:
-  struct Box {
-    Vec2 lo, hi;
+  struct Corner {
+    Vec2 at;
+    int outline, corner;
   };
 
   /// From p to the point nearest to the lines of the edges there.
@@ -53,9 +58,7 @@ class Snapper {
     double xx = 0, xy = 0, yy = 0;  // sum of n n', n the normals
     Vec2 right;                     // sum of n (distance of the line along n)
     for (std::size_t o = 0; o < originals_.size(); ++o) {
-      const Box& box = boxes_[o];
-      if (p.x < box.lo.x - near || p.x > box.hi.x + near || p.y < box.lo.y - near || p.y > box.hi.y + near)
-        continue;
+      if (!boxes_[o].reaches(p, near)) continue;
       const Outline& points = originals_[o];
       for (std::size_t k = 0; k < points.size(); ++k) {
         const Vec2 a = points[k], b = points[k + 1 < points.size() ? k + 1 : 0];
@@ -82,8 +85,9 @@ class Snapper {
 
   const std::vector<Outline>& originals_;
   double spacing_;
-  std::vector<Vec2> corners_;  // by x, then y
-  std::vector<Box> boxes_;
+  std::vector<Corner> corners_;  // by x, then y
+  std::vector<OutlineBox> boxes_;
+  int outline_ = 0, corner_ = 0;  // of the last that was found
 };
 
 /// Does the way from a over b to c come back on itself, or not move on?
@@ -113,8 +117,18 @@ void clean(double near, Outline& outline) {
 
 }  // namespace
 
+OutlineBox boxOf(const Outline& outline) {
+  OutlineBox box;
+  for (Vec2 p : outline) {
+    box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y)};
+    box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y)};
+  }
+  return box;
+}
+
 void snapOutlines(const std::vector<Outline>& originals, double spacing, std::vector<Outline>& outlines) {
-  const Snapper snapper(originals, spacing);
+  if (outlines.empty()) return;
+  Snapper snapper(originals, spacing);
   for (Outline& outline : outlines) {
     for (Vec2& p : outline) p = snapper.snapped(p);
     clean(0.5 * spacing, outline);

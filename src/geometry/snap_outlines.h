@@ -12,6 +12,15 @@
 
 namespace smokebox {
 
+/// Around some points.
+struct OutlineBox {
+  Vec2 lo{1e300, 1e300}, hi{-1e300, -1e300};
+  bool reaches(Vec2 p, double within) const {
+    return p.x >= lo.x - within && p.x <= hi.x + within && p.y >= lo.y - within && p.y <= hi.y + within;
+  }
+};
+OutlineBox boxOf(const Outline& outline);
+
 /// `spacing`: of the grid of integers, m. `outlines` is the union of `originals`, found on that grid.
 void snapOutlines(const std::vector<Outline>& originals, double spacing, std::vector<Outline>& outlines);
 
