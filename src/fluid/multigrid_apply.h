@@ -33,11 +33,11 @@ SMOKEBOX_INLINE void applyRow(const Level& level, const Floats& values, int j, U
       } else if (run->kind & (kLeftSide | kRightSide)) {
         along.at(x + i);
         const LaneMask side = laneAtSide(run->kind);
-        const Lanes v = along.here, link = side ? zero + sideCell(level, run->kind, j).link : one;
+        const Lanes v = along.here, link = select(side, zero + sideCell(level, run->kind, j).link, one);
         const Lanes byX = run->kind & kLeftSide ? link * (v - along.left) + (v - along.right)
                                                 : (v - along.left) + link * (v - along.right);
         const Lanes sum = byX + ((v - load(x + i - stride)) + (v - load(x + i + stride)));
-        use(i, tellsWhole ? (side ? sum : wholeSum()) : sum);
+        use(i, tellsWhole ? select(side, sum, wholeSum()) : sum);
         i = last;
       } else {
         for (; i < last; i += kLanes) {
@@ -48,9 +48,9 @@ SMOKEBOX_INLINE void applyRow(const Level& level, const Floats& values, int j, U
                       (below * (v - load(x + i - stride)) + above * (v - load(x + i + stride)));
           if (tellsWhole) {
             const LaneMask whole = ((left == 1.0f) & (right == 1.0f)) & ((below == 1.0f) & (above == 1.0f));
-            sum = whole ? wholeSum() : sum;
+            sum = select(whole, wholeSum(), sum);
           }
-          use(i, load(id + i) > 0.0f ? sum : zero);
+          use(i, select(load(id + i) > 0.0f, sum, zero));
         }
       }
     }

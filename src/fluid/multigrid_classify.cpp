@@ -14,8 +14,8 @@ std::uint8_t sideOf(const Level& level, int c, bool whole, Lanes left, Lanes rig
                     const Lanes& above) {
   const bool first = c == 0, last = c + 1 == level.chunks;
   if (!whole || first == last || level.periodicX) return kGeneral;
-  if (first) left[0] = 1;
-  if (last) right[kLanes - 1] = 1;
+  if (first) setLane(left, 0, 1.0f);
+  if (last) setLane(right, kLanes - 1, 1.0f);
   const LaneMask ones = ((left == 1.0f) & (right == 1.0f)) & ((below == 1.0f) & (above == 1.0f));
   return !allLanes(ones) ? kGeneral : first ? kLeftSide : kRightSide;
 }
@@ -99,10 +99,10 @@ void Builder::classify(Level& level) {
       }
       Lanes diagonal = (left + right) + (below + above);
       if (!whole)
-        for (int q = level.nx - i; q < kLanes; ++q) diagonal[q] = 0;
+        for (int q = level.nx - i; q < kLanes; ++q) setLane(diagonal, q, 0.0f);
       const LaneMask used = diagonal > 0.0f;
       const Lanes zero = {}, one = zero + 1.0f;
-      store(id + i, used ? one / (used ? diagonal : one) : zero);
+      store(id + i, select(used, one / select(used, diagonal, one), zero));
       // Compared with what the links would be without solids; sides of the domain do not count.
       const Lanes wide = load(level.wide.data() + i);
       const auto off =

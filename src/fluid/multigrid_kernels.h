@@ -5,6 +5,7 @@
 // Sums of a row go into 16 lanes, which are then added in a fixed order in float64.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "base/lanes.h"
@@ -13,83 +14,78 @@
 namespace smokebox::multigrid {
 
 SMOKEBOX_INLINE double sumOfLanes(const Lanes& v) {
-  typedef float Half __attribute__((vector_size(32)));
-  typedef double Eight __attribute__((vector_size(64)));
-  typedef double Four __attribute__((vector_size(32)));
-  Half low, high;
-  std::memcpy(&low, &v, sizeof(low));
-  std::memcpy(&high, reinterpret_cast<const char*>(&v) + sizeof(low), sizeof(high));
-  const Eight pair = __builtin_convertvector(low, Eight) + __builtin_convertvector(high, Eight);
-  Four first, last;
-  std::memcpy(&first, &pair, sizeof(first));
-  std::memcpy(&last, reinterpret_cast<const char*>(&pair) + sizeof(first), sizeof(last));
-  const Four four = first + last;
+  float lanes[kLanes];
+  store(lanes, v);
+  const auto at = [&](int k) { return static_cast<double>(lanes[k]); };
+  double four[4];
+  for (int k = 0; k < 4; ++k) four[k] = (at(k) + at(k + 8)) + (at(k + 4) + at(k + 12));
   return (four[0] + four[2]) + (four[1] + four[3]);
 }
 
 /// The larger one of each lane, of magnitudes. Compared by their bits: a NaN is larger than any number, and
 /// stays.
 SMOKEBOX_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
-  const LaneMask x = reinterpret_cast<const LaneMask&>(a), y = reinterpret_cast<const LaneMask&>(b);
-  const LaneMask z = x > y ? x : y;
-  return reinterpret_cast<const Lanes&>(z);
+  const LaneMask x = bitsOfFloats(a), y = bitsOfFloats(b);
+  return floatsOfBits(select(x > y, x, y));
 }
 
 /// Of magnitudes.
 SMOKEBOX_INLINE float largestLane(const Lanes& v) {
-  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  Lanes m = larger(v, __builtin_shuffle(v, place ^ 8));
-  m = larger(m, __builtin_shuffle(m, place ^ 4));
-  m = larger(m, __builtin_shuffle(m, place ^ 2));
-  return larger(m, __builtin_shuffle(m, place ^ 1))[0];
+  int bits[kLanes];
+  std::memcpy(bits, &v, sizeof(bits));
+  for (int half = kLanes / 2; half > 0; half /= 2)
+    for (int k = 0; k < half; ++k) bits[k] = std::max(bits[k], bits[k + half]);
+  return std::bit_cast<float>(bits[0]);
 }
 
 /// Are all lanes true?
 SMOKEBOX_INLINE bool allLanes(const LaneMask& m) {
-  typedef long long Longs __attribute__((vector_size(64), aligned(4), may_alias));
-  const Longs& l = reinterpret_cast<const Longs&>(m);
-  long long all = l[0];
-  for (int k = 1; k < 8; ++k) all &= l[k];
+  long long pairs[kLanes / 2];
+  std::memcpy(pairs, &m, sizeof(pairs));
+  long long all = -1;
+  for (const long long pair : pairs) all &= pair;
   return all == -1;
 }
 
 /// A bit for each lane that is true.
 SMOKEBOX_INLINE unsigned bitsOf(const LaneMask& m) {
-  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-  const LaneMask bits = m & place;
-  int sum = 0;
-  for (int k = 0; k < kLanes; ++k) sum |= bits[k];
-  return static_cast<unsigned>(sum);
+  int lanes[kLanes];
+  std::memcpy(lanes, &m, sizeof(lanes));
+  unsigned sum = 0;
+  for (int k = 0; k < kLanes; ++k) sum |= static_cast<unsigned>(lanes[k]) & (1u << k);
+  return sum;
 }
 
 /// Lanes of columns i to i + 15 of row j that have the given colour (0 red: i + j even; where the level is
 /// mirrored, the right and the upper half have their colours the other way round).
 SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int j, int colour) {
-  const LaneMask even = {-1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0};
-  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const LaneMask place = laneNumbers(), even = (place & 1) - 1;
   const LaneMask mask = even ^ -((level.colourOfRow(j) + colour) & 1);
   return mask ^ (place >= level.swapsAt - static_cast<int>(i));
 }
 
 /// The lanes of a chunk whose bits are set.
 SMOKEBOX_INLINE LaneMask lanesOfBits(std::uint16_t bits) {
+#ifdef __AVX512F__
   const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+#else
+  static constexpr int kBits[] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                  256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  const LaneMask place = LaneMask::at(kBits);
+#endif
   return (place & static_cast<int>(bits)) != 0;
 }
 
 /// What stands for a quarter in the chunk beside a side, and for the links to the left and to the right of
 /// its cells.
-SMOKEBOX_INLINE LaneMask laneAtSide(int kind) {
-  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  return place == (kind & kLeftSide ? 0 : kLanes - 1);
-}
+SMOKEBOX_INLINE LaneMask laneAtSide(int kind) { return laneNumbers() == (kind & kLeftSide ? 0 : kLanes - 1); }
 SMOKEBOX_INLINE const Level::SideCell& sideCell(const Level& level, int kind, int j) {
   return level.sideCells[2 * j + (kind & kLeftSide ? 0 : 1)];
 }
 SMOKEBOX_INLINE Lanes inverseDiagonal(const Level& level, int kind, int j) {
   const Lanes quarter = Lanes{} + 0.25f;
   if (kind & kRegular) return quarter;
-  return laneAtSide(kind) ? Lanes{} + sideCell(level, kind, j).inverse : quarter;
+  return select(laneAtSide(kind), Lanes{} + sideCell(level, kind, j).inverse, quarter);
 }
 
 /// Goes along a row, chunk by chunk: the values of one, and those to the left and to the right of them. What
@@ -133,7 +129,7 @@ SMOKEBOX_INLINE void sweepRegular(Along& along, float* x, const float* b, std::p
     const Lanes value =
         (((along.left + along.right) + (load(x + i - stride) + load(x + i + stride))) + load(b + i)) *
         inverse;
-    store(x + i, lanes ? value : along.here);
+    store(x + i, select(lanes, value, along.here));
   }
 }
 
@@ -145,7 +141,7 @@ SMOKEBOX_INLINE void sweepGeneral(const Along& along, float* x, const float* b, 
                         (load(ay) * load(x - stride) + load(ay + stride) * load(x + stride))) +
                        load(b)) *
                       load(id);
-  store(x, lanes ? value : along.here);
+  store(x, select(lanes, value, along.here));
 }
 
 /// Where two cells have next to no link but that between them, they cannot be solved as one.
@@ -357,10 +353,11 @@ inline void startRow(Level& level, int j) {
         expect(b + i + level.stride), expect(x + i + level.stride);
     if (run.kind != kGeneral) {
       const Lanes inverse = inverseDiagonal(level, run.kind, j);
-      for (int i = run.begin; i < run.end; i += kLanes) store(x + i, lanes ? load(b + i) * inverse : zero);
+      for (int i = run.begin; i < run.end; i += kLanes)
+        store(x + i, select(lanes, load(b + i) * inverse, zero));
     } else {
       for (int i = run.begin; i < run.end; i += kLanes)
-        store(x + i, lanes ? load(b + i) * load(id + i) : zero);
+        store(x + i, select(lanes, load(b + i) * load(id + i), zero));
     }
   }
   middlePair<false>(level, j, 0).solve();

@@ -19,27 +19,28 @@ int firstExtra(const Level& level, int i, int j) {
 // The blocks of a chunk's columns I to I + 15, paired from fine column i on, that cover more than one part.
 // Bit k: block I + k.
 unsigned dividedPairs(const Level& fine, int i, int j, bool upper) {
-  const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
-  const LaneMask odd = even + 1;
   // Rows end with room for one more chunk only: the second half of the last pair may lie beyond it.
   const bool pair = i + kLanes < fine.chunks * kLanes;
   const Lanes zero = {};
   const LaneMask none = {};
-  const auto of = [&](const Floats& f, int row, const LaneMask& which) __attribute__((always_inline)) {
+  const auto evenOf = [&](const Floats& f, int row) __attribute__((always_inline)) {
     const float* p = fine.row(f, row) + i;
-    return __builtin_shuffle(load(p), pair ? load(p + kLanes) : zero, which);
+    return evenLanes(load(p), pair ? load(p + kLanes) : zero);
+  };
+  const auto oddOf = [&](const Floats& f, int row) __attribute__((always_inline)) {
+    const float* p = fine.row(f, row) + i;
+    return oddLanes(load(p), pair ? load(p + kLanes) : zero);
   };
   // Trees that the blocks' cells and the links inside them make: cells minus links, one more for a closed
   // ring.
-  LaneMask count = (of(fine.id, j, even) != 0.0f) + (of(fine.id, j, odd) != 0.0f);
-  const LaneMask lower = (of(fine.id, j, odd) != 0.0f) & (of(fine.ax, j, odd) > 0.0f);
+  LaneMask count = (evenOf(fine.id, j) != 0.0f) + (oddOf(fine.id, j) != 0.0f);
+  const LaneMask lower = (oddOf(fine.id, j) != 0.0f) & (oddOf(fine.ax, j) > 0.0f);
   LaneMask links = lower, ring = none;
   if (upper) {
-    const LaneMask topRight = of(fine.id, j + 1, odd) != 0.0f;
-    count += (of(fine.id, j + 1, even) != 0.0f) + topRight;
-    const LaneMask top = topRight & (of(fine.ax, j + 1, odd) > 0.0f);
-    const LaneMask left = of(fine.ay, j + 1, even) > 0.0f,
-                   right = topRight & (of(fine.ay, j + 1, odd) > 0.0f);
+    const LaneMask topRight = oddOf(fine.id, j + 1) != 0.0f;
+    count += (evenOf(fine.id, j + 1) != 0.0f) + topRight;
+    const LaneMask top = topRight & (oddOf(fine.ax, j + 1) > 0.0f);
+    const LaneMask left = evenOf(fine.ay, j + 1) > 0.0f, right = topRight & (oddOf(fine.ay, j + 1) > 0.0f);
     links += top + left + right;
     ring = lower & top & left & right;
   }

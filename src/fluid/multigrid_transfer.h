@@ -6,27 +6,22 @@
 namespace smokebox::multigrid {
 
 /// Lanes of the coarse blocks I to I + 15 beyond the middle one.
-SMOKEBOX_INLINE LaneMask lanesBeyond(const Joining& join, int I) {
-  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  return place > join.middle - I;
-}
+SMOKEBOX_INLINE LaneMask lanesBeyond(const Joining& join, int I) { return laneNumbers() > join.middle - I; }
 
 /// Joins the columns of the coarse blocks I to I + 15: their sums, or each block's first. at(i): what the
 /// fine columns i to i + 15 hold.
 template <bool first, class At>
 SMOKEBOX_INLINE Lanes joinColumns(const Joining& join, int I, At&& at) {
-  const LaneMask even = {0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30};
-  const LaneMask odd = even + 1;
   const auto pairs = [&](int i) __attribute__((always_inline)) {
     const Lanes p = at(i), q = at(i + kLanes);
-    const Lanes one = __builtin_shuffle(p, q, even);
-    return first ? one : one + __builtin_shuffle(p, q, odd);
+    const Lanes one = evenLanes(p, q);
+    return first ? one : one + oddLanes(p, q);
   };
   if (I + kLanes <= join.middle) return pairs(2 * I);
   if (I > join.middle) return pairs(2 * I + join.shift);
-  Lanes sum = lanesBeyond(join, I) ? pairs(2 * I + join.shift) : pairs(2 * I);
+  Lanes sum = select(lanesBeyond(join, I), pairs(2 * I + join.shift), pairs(2 * I));
   const Lanes middle = at(2 * join.middle);
-  sum[join.middle - I] = first || join.shift < 0 ? middle[0] : (middle[0] + middle[2]) + middle[1];
+  setLane(sum, join.middle - I, first || join.shift < 0 ? middle[0] : (middle[0] + middle[2]) + middle[1]);
   return sum;
 }
 
@@ -72,16 +67,14 @@ inline void prolongRow(Level& fine, const Level& coarse, int j) {
     p.value = fine.x[p.at] + coarse.x[p.parent];
   }
   const std::uint8_t* kind = fine.chunkRow(j);
-  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const Joining join = fine.joinX;
   for (int c = 0, i = 0; c < fine.chunks; ++c, i += kLanes) {
     if (kind[c] & kEmpty) continue;
     if (large) expect(x + i + fine.stride), expect(b + i + fine.stride);
-    Lanes value = __builtin_shuffle(load(correction + i / 2), place >> 1);
+    Lanes value = loadTwice(correction + i / 2);
     if (i + kLanes > join.from) {
-      const Lanes beyond =
-          __builtin_shuffle(load(correction + i / 2 - (join.shift > 0 ? 1 : 0)), (place + 1) >> 1);
-      value = place >= join.from - i ? beyond : value;
+      const Lanes beyond = loadTwiceFromMiddle(correction + i / 2 - (join.shift > 0 ? 1 : 0));
+      value = select(laneNumbers() >= join.from - i, beyond, value);
     }
     store(x + i, load(x + i) + value);
   }

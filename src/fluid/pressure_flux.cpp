@@ -5,6 +5,9 @@
 
 #include "fluid/multigrid_kernels.h"
 
+// Vectors wider than the machine's stay inside inlined functions. The warning comes at the end of the file.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace smokebox {
 
 using multigrid::kEmpty;
@@ -15,13 +18,13 @@ namespace {
 /// The larger one; a NaN stays.
 double largerOf(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
-// Half a chunk, in float64.
-constexpr int kHalf = 8;
-typedef float HalfChunk __attribute__((vector_size(4 * kHalf), aligned(4), may_alias));
-typedef double Doubles __attribute__((vector_size(8 * kHalf)));
+// A quarter of a chunk, in float64.
+constexpr int kQuarter = 4;
+typedef float QuarterChunk __attribute__((vector_size(4 * kQuarter), aligned(4), may_alias));
+typedef double Doubles __attribute__((vector_size(8 * kQuarter)));
 
 SMOKEBOX_INLINE Doubles doublesAt(const float* p) {
-  return __builtin_convertvector(*reinterpret_cast<const HalfChunk*>(p), Doubles);
+  return __builtin_convertvector(*reinterpret_cast<const QuarterChunk*>(p), Doubles);
 }
 
 /// Through faces that may be open in part.
@@ -47,9 +50,8 @@ void PressureFlux::closeFaces(const Boundary& boundary, const multigrid::Level& 
   const int nx = links.nx, ny = links.ny;
   const auto close =
       [](float* velocity, const float* open, const float* wall, int inside) __attribute__((always_inline)) {
-    const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const Lanes old = load(velocity);
-    store(velocity, (load(open) > 0.0f) | (place >= inside) ? old : load(wall));
+    store(velocity, select((load(open) > 0.0f) | (laneNumbers() >= inside), old, load(wall)));
   };
   forRows(pool_, boundary.grid.cells(), 0, ny, [&](int j) {
     const float *open = links.row(links.ax, j), *openBelow = links.row(links.ay, j);
@@ -121,21 +123,21 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
       alignas(64) float sums[kLanes], right[kLanes];
       for (int k = 0; k < kLanes; ++k) right[k] = wallU[first + k + 1];
       if (links.periodicX && first + kLanes >= nx) right[nx - 1 - first] = wallU[0];
-      for (int k = 0; k < kLanes; k += kHalf) {
+      for (int k = 0; k < kLanes; k += kQuarter) {
         const int i = first + k;
         const Doubles sum =
             (sideFlux(ax + i, ur + i, wallU + i) - sideFlux(ax + i + 1, ur + i + 1, right + k)) +
             (sideFlux(ay + i, vr + i, wallV + i) - sideFlux(ayAbove + i, va + i, wallVAbove + i));
-        *reinterpret_cast<HalfChunk*>(sums + k) = __builtin_convertvector(sum, HalfChunk);
+        *reinterpret_cast<QuarterChunk*>(sums + k) = __builtin_convertvector(sum, QuarterChunk);
       }
       // Cell by cell only where the chunks of mirror images are no mirror images.
       const Lanes exact = load(sums);
-      net = nx % kLanes == 0 ? exact : whole ? net : exact;
+      net = nx % kLanes == 0 ? exact : select(whole, net, exact);
     }
     if (!regular) {
-      net = load(id + first) > zero ? net : zero;
-      left = load(ax + first) > zero ? left : zero;
-      below = load(ay + first) > zero ? below : zero;
+      net = select(load(id + first) > zero, net, zero);
+      left = select(load(ax + first) > zero, left, zero);
+      below = select(load(ay + first) > zero, below, zero);
     }
     store(out + first, net);
     flux = multigrid::larger(magnitude(net), flux);
@@ -153,11 +155,10 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
 void PressureFlux::subtractFromRow(const multigrid::Level& links, const multigrid::Floats& phi, Field& u,
                                    Field& v, int j) {
   const int nx = links.nx, ny = links.ny;
-  const LaneMask place = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
   const auto subtract = [](float* velocity, const float* open, const float* here, std::ptrdiff_t back,
                            const LaneMask& inside) __attribute__((always_inline)) {
     const Lanes old = load(velocity), zero = {};
-    store(velocity, (load(open) > zero) & inside ? old - (load(here) - load(here - back)) : old);
+    store(velocity, select((load(open) > zero) & inside, old - (load(here) - load(here - back)), old));
   };
   const float* open = links.row(links.ax, j);
   const float* openBelow = links.row(links.ay, j);
@@ -173,7 +174,7 @@ void PressureFlux::subtractFromRow(const multigrid::Level& links, const multigri
       store(vr + first, load(vr + first) - (value - load(here + first - links.stride)));
       continue;
     }
-    const LaneMask inside = place < nx - first;
+    const LaneMask inside = laneNumbers() < nx - first;
     subtract(ur + first, open + first, here + first, 1, inside);
     subtract(vr + first, openBelow + first, here + first, links.stride, inside);
   }
