@@ -8,22 +8,22 @@ namespace {
 
 /// visit(impulses, masses, count) for all impulses along normals and tangents, in a fixed order.
 template <class Visit>
-void eachImpulse(ContactBlocks& blocks, std::vector<Contact>& spare, std::vector<Contact>& lively,
+void eachImpulse(ContactBlocks& blocks, std::vector<SolvedContact>& spare, std::vector<SolvedContact>& lively,
                  Visit&& visit) {
   blocks.eachImpulse(visit);
-  for (std::vector<Contact>* contacts : {&spare, &lively})
-    for (Contact& contact : *contacts)
+  for (std::vector<SolvedContact>* contacts : {&spare, &lively})
+    for (SolvedContact& contact : *contacts)
       for (int k = 0; k < contact.count; ++k) {
         ContactPoint& p = contact.points[k];
-        visit(&p.impulseN, &p.massN, 1);
-        visit(&p.impulseT, &p.massT, 1);
+        visit(&p.impulseN, &contact.massN[k], 1);
+        visit(&p.impulseT, &contact.massT[k], 1);
       }
 }
 
 }  // namespace
 
 void ConjugateSweeps::list(const Bodies& bodies, const ContactBlocks& blocks,
-                           const std::vector<Contact>& spare, const std::vector<Contact>& lively) {
+                           const std::vector<SolvedContact>& spare, const std::vector<SolvedContact>& lively) {
   isListed_.assign(bodies.count(), 0);
   auto add = [&](int body) {
     if (isListed_[body] || !bodies.moves(body)) return;
@@ -31,15 +31,15 @@ void ConjugateSweeps::list(const Bodies& bodies, const ContactBlocks& blocks,
     bodies_.push_back(body);
   };
   blocks.eachBody(add);
-  for (const std::vector<Contact>* contacts : {&spare, &lively})
-    for (const Contact& contact : *contacts) {
+  for (const std::vector<SolvedContact>* contacts : {&spare, &lively})
+    for (const SolvedContact& contact : *contacts) {
       add(contact.a);
       add(contact.b);
     }
 }
 
-void ConjugateSweeps::remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
-                               std::vector<Contact>& lively) {
+void ConjugateSweeps::remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<SolvedContact>& spare,
+                               std::vector<SolvedContact>& lively) {
   if (bodies_.empty()) list(bodies, blocks, spare, lively);
   impulses_.clear();
   eachImpulse(blocks, spare, lively, [&](const auto* impulse, const auto*, int count) {
@@ -49,8 +49,8 @@ void ConjugateSweeps::remember(const Bodies& bodies, ContactBlocks& blocks, std:
   for (const int b : bodies_) velocities_.push_back(bodies.velocity[b]);
 }
 
-void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
-                                  std::vector<Contact>& lively) {
+void ConjugateSweeps::extrapolate(Bodies& bodies, ContactBlocks& blocks, std::vector<SolvedContact>& spare,
+                                  std::vector<SolvedContact>& lively) {
   // The squares of the changes over the effective masses: energies, whatever the masses are.
   double size = 0;
   std::size_t at = 0;

@@ -19,15 +19,15 @@ class ConjugateSweeps {
     bodies_.clear();
   }
   /// Before a sweep.
-  void remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
-                std::vector<Contact>& lively);
+  void remember(const Bodies& bodies, ContactBlocks& blocks, std::vector<SolvedContact>& spare,
+                std::vector<SolvedContact>& lively);
   /// After it, if another one follows: moves impulses and velocities on.
-  void extrapolate(Bodies& bodies, ContactBlocks& blocks, std::vector<Contact>& spare,
-                   std::vector<Contact>& lively);
+  void extrapolate(Bodies& bodies, ContactBlocks& blocks, std::vector<SolvedContact>& spare,
+                   std::vector<SolvedContact>& lively);
 
  private:
-  void list(const Bodies& bodies, const ContactBlocks& blocks, const std::vector<Contact>& spare,
-            const std::vector<Contact>& lively);
+  void list(const Bodies& bodies, const ContactBlocks& blocks, const std::vector<SolvedContact>& spare,
+            const std::vector<SolvedContact>& lively);
 
   bool known_ = false;  // there is a direction
   double size_ = 0;     // of the last gradient, J

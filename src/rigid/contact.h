@@ -9,9 +9,7 @@ namespace smokebox {
 struct ContactPoint {
   Vec2 armA, armB;              // from each body's centre of mass
   double gap = 0;               // m, below 0: overlap; for the bodies' places when the contact was found
-  double massN = 0, massT = 0;  // effective masses along the normal and the tangent, kg
   double impulseN = 0, impulseT = 0;  // N s of a sub-step
-  double allowed = 0;                 // speed at which the gap may close in a sub-step, m/s
   std::uint32_t feature = 0;
 };
 
@@ -19,19 +17,28 @@ struct Contact {
   int a = 0, b = 0;
   int pieceA = 0, pieceB = 0;
   int count = 0;
-  int face = 0;      // whose edge gives the normal and meets corners: 1 a, 2 b; 0: none
-  double spare = 0;  // parted faster than it needs by so much in the last sweep, m/s; 0: bears
-  Vec2 normal;       // from a to b
-  Vec2 shift;        // of the image of b that is meant, beyond a periodic side
+  std::int8_t face = 0;  // whose edge gives the normal and meets corners: 1 a, 2 b; 0: none
+  bool struck = false;   // had an impact in this sub-step
+  bool met = false;      // an impact has placed its points anew
+  Vec2 normal;           // from a to b
+  Vec2 shift;            // of the image of b that is meant, beyond a periodic side
   double friction = 0, bounce = 0;
   double approach = 0;  // fastest at which its points met in this step, m/s
-  bool struck = false;  // had an impact in this sub-step
-  double change = 0;    // of a relative velocity in the last sweep, m/s
   double total = 0;     // N s along the normal in this step, impacts too
+  ContactPoint points[2];
+};
+
+/// One that is solved by itself, with what that takes.
+struct SolvedContact : Contact {
+  SolvedContact() = default;
+  explicit SolvedContact(const Contact& contact) : Contact(contact) {}
+  double spare = 0;   // parted faster than it needs by so much in the last sweep, m/s; 0: bears
+  double change = 0;  // of a relative velocity in the last sweep, m/s
   /// Of the points' parting speeds to impulses: 0 to 0, each to the other, 1 to 1, and one over the
   /// determinant; that is 0 where two points are hardly two.
   double response[4] = {0, 0, 0, 0};
-  ContactPoint points[2];
+  double massN[2] = {0, 0}, massT[2] = {0, 0};  // effective masses along the normal and the tangent, kg
+  double allowed[2] = {0, 0};                   // speed at which the gap may close in a sub-step, m/s
 };
 
 }  // namespace smokebox

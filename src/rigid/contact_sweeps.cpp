@@ -6,19 +6,19 @@
 
 namespace smokebox {
 
-void setMasses(const Bodies& bodies, Contact& contact) {
+void setMasses(const Bodies& bodies, SolvedContact& contact) {
   const InverseMass a = bodies.inverse[contact.a], b = bodies.inverse[contact.b];
   const Vec2 tangent = perpendicular(contact.normal);
   for (int k = 0; k < contact.count; ++k) {
-    ContactPoint& p = contact.points[k];
+    const ContactPoint& p = contact.points[k];
     auto massAlong = [&](Vec2 d) {
       const double ta = cross(p.armA, d), tb = cross(p.armB, d);
       const double inverse = a.mass + b.mass + a.inertia * ta * ta + b.inertia * tb * tb;
       return inverse > 0 ? 1 / inverse : 0;
     };
-    p.massN = massAlong(contact.normal);
-    p.massT = massAlong(tangent);
-    contact.response[2 * k] = p.massN > 0 ? 1 / p.massN : 0;
+    contact.massN[k] = massAlong(contact.normal);
+    contact.massT[k] = massAlong(tangent);
+    contact.response[2 * k] = contact.massN[k] > 0 ? 1 / contact.massN[k] : 0;
   }
   contact.response[3] = 0;
   if (contact.count != 2) return;
@@ -50,8 +50,8 @@ void pushApart(Bodies& bodies, const Contact& contact, const ContactPoint& point
   bodies.push(contact.b, point.armB, impulse);
 }
 
-void warmStart(Bodies& bodies, const std::vector<Contact>& contacts) {
-  for (const Contact& contact : contacts)
+void warmStart(Bodies& bodies, const std::vector<SolvedContact>& contacts) {
+  for (const SolvedContact& contact : contacts)
     for (int k = 0; k < contact.count; ++k)
       pushApart(bodies, contact, contact.points[k], contact.points[k].impulseN, contact.points[k].impulseT);
 }
@@ -70,19 +70,19 @@ void solveBoth(const double k[4], const double speed[2], double impulse[2]) {
 namespace {
 
 /// Two points at one place are solved one after the other.
-bool areTwo(const Contact& contact) { return contact.count == 2 && contact.response[3] > 0; }
+bool areTwo(const SolvedContact& contact) { return contact.count == 2 && contact.response[3] > 0; }
 
 }  // namespace
 
-void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h) {
-  for (Contact& contact : contacts)
+void prepare(const Bodies& bodies, std::vector<SolvedContact>& contacts, double h) {
+  for (SolvedContact& contact : contacts)
     for (int k = 0; k < contact.count; ++k) {
-      ContactPoint& p = contact.points[k];
-      p.allowed = std::max(p.gap + gapMoved(bodies, contact, p), 0.0) / h;
+      const ContactPoint& p = contact.points[k];
+      contact.allowed[k] = std::max(p.gap + gapMoved(bodies, contact, p), 0.0) / h;
     }
 }
 
-double solve(Bodies& bodies, Contact& contact) {
+double solve(Bodies& bodies, SolvedContact& contact) {
   double& largest = contact.change;
   largest = 0;
   const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
@@ -100,42 +100,44 @@ double solve(Bodies& bodies, Contact& contact) {
     vb.y += mb.mass * along.y * impulse;
     vb.turn += mb.inertia * cross(p.armB, along) * impulse;
   };
-  auto change = [&](ContactPoint& p, double total) {
+  auto change = [&](int k, double total) {
+    ContactPoint& p = contact.points[k];
     const double by = total - p.impulseN;
     p.impulseN = total;
     push(n, p, by);
-    if (p.massN > 0) largest = std::max(largest, std::abs(by) / p.massN);
+    if (contact.massN[k] > 0) largest = std::max(largest, std::abs(by) / contact.massN[k]);
   };
   contact.spare = 0;
   double parts = std::numeric_limits<double>::infinity();
-  auto isIdle = [&](const ContactPoint& p) {
+  auto isIdle = [&](int k) {
+    const ContactPoint& p = contact.points[k];
     if (p.impulseN != 0 || p.impulseT != 0) return false;
-    parts = std::min(parts, speed(n, p) + p.allowed);
+    parts = std::min(parts, speed(n, p) + contact.allowed[k]);
     return parts >= 0;
   };
-  if (isIdle(contact.points[0]) && (contact.count < 2 || isIdle(contact.points[1]))) {
+  if (isIdle(0) && (contact.count < 2 || isIdle(1))) {
     contact.spare = parts;
     return 0;
   }
   if (areTwo(contact)) {
-    ContactPoint &p = contact.points[0], &q = contact.points[1];
+    const ContactPoint &p = contact.points[0], &q = contact.points[1];
     const double* k = contact.response;
-    const double free[2] = {speed(n, p) + p.allowed - k[0] * p.impulseN - k[1] * q.impulseN,
-                            speed(n, q) + q.allowed - k[1] * p.impulseN - k[2] * q.impulseN};
+    const double free[2] = {speed(n, p) + contact.allowed[0] - k[0] * p.impulseN - k[1] * q.impulseN,
+                            speed(n, q) + contact.allowed[1] - k[1] * p.impulseN - k[2] * q.impulseN};
     double total[2];
     solveBoth(k, free, total);
-    change(p, total[0]);
-    change(q, total[1]);
+    change(0, total[0]);
+    change(1, total[1]);
   } else {
     for (int k = 0; k < contact.count; ++k) {
-      ContactPoint& p = contact.points[k];
-      change(p, std::max(p.impulseN - p.massN * (speed(n, p) + p.allowed), 0.0));
+      const ContactPoint& p = contact.points[k];
+      change(k, std::max(p.impulseN - contact.massN[k] * (speed(n, p) + contact.allowed[k]), 0.0));
     }
   }
   for (int k = 0; k < contact.count; ++k) {
     ContactPoint& p = contact.points[k];
     const double most = contact.friction * p.impulseN;
-    const double tangential = std::clamp(p.impulseT - p.massT * speed(t, p), -most, most);
+    const double tangential = std::clamp(p.impulseT - contact.massT[k] * speed(t, p), -most, most);
     push(t, p, tangential - p.impulseT);
     p.impulseT = tangential;
   }
@@ -144,15 +146,15 @@ double solve(Bodies& bodies, Contact& contact) {
   return largest;
 }
 
-double solve(Bodies& bodies, std::vector<Contact>& contacts, double enough) {
+double solve(Bodies& bodies, std::vector<SolvedContact>& contacts, double enough) {
   double largest = 0;
-  for (Contact& contact : contacts)
+  for (SolvedContact& contact : contacts)
     if (contact.spare <= enough) largest = std::max(largest, solve(bodies, contact));
   return largest;
 }
 
-void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most) {
-  for (Contact& contact : contacts) {
+void separate(Bodies& bodies, std::vector<SolvedContact>& contacts, double share, double most) {
+  for (SolvedContact& contact : contacts) {
     for (int k = 0; k < contact.count; ++k) contact.total += contact.points[k].impulseN;
     auto lacking = [&](const ContactPoint& p) {
       const double gap = p.gap + gapMoved(bodies, contact, p);
@@ -182,7 +184,7 @@ void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, doub
     for (int k = 0; k < contact.count; ++k) {
       const ContactPoint& p = contact.points[k];
       const double lack = lacking(p);
-      if (lack < 0) push(p, -p.massN * lack);
+      if (lack < 0) push(p, -contact.massN[k] * lack);
     }
   }
 }

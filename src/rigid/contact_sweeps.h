@@ -9,7 +9,7 @@
 namespace smokebox {
 
 /// Effective masses of all points, from the arms and the normal.
-void setMasses(const Bodies& bodies, Contact& contact);
+void setMasses(const Bodies& bodies, SolvedContact& contact);
 /// Speed at which a point's sides part along the normal, m/s.
 double partingSpeed(const Bodies& bodies, const Contact& contact, const ContactPoint& point);
 /// How much of a point's gap the bodies' displacements since the step's start make up, m.
@@ -22,13 +22,13 @@ void pushApart(Bodies& bodies, const Contact& contact, const ContactPoint& point
 /// lacks without any impulse.
 void solveBoth(const double k[4], const double speed[2], double impulse[2]);
 
-void warmStart(Bodies& bodies, const std::vector<Contact>& contacts);
+void warmStart(Bodies& bodies, const std::vector<SolvedContact>& contacts);
 /// Once before the sweeps of a sub-step: how fast each gap may close.
-void prepare(const Bodies& bodies, std::vector<Contact>& contacts, double h);
+void prepare(const Bodies& bodies, std::vector<SolvedContact>& contacts, double h);
 /// Gives the largest change of a relative velocity, m/s, and notes it in the contact.
-double solve(Bodies& bodies, Contact& contact);
+double solve(Bodies& bodies, SolvedContact& contact);
 /// One sweep; contacts that parted faster than they need by more than `enough`, m/s, are left out.
-double solve(Bodies& bodies, std::vector<Contact>& contacts, double enough);
-void separate(Bodies& bodies, std::vector<Contact>& contacts, double share, double most);
+double solve(Bodies& bodies, std::vector<SolvedContact>& contacts, double enough);
+void separate(Bodies& bodies, std::vector<SolvedContact>& contacts, double share, double most);
 
 }  // namespace smokebox

@@ -135,7 +135,7 @@ bool Impacts::meet(const Bodies& bodies, const std::vector<Motion>& way, Contact
     now = then;
   }
   contact = met;
-  setMasses(bodies, contact);
+  contact.met = true;
   return true;
 }
 
@@ -180,7 +180,7 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
       point.armB = point.armB + (xb - atB);
       point.gap -= bend + now * speed + gapMoved(bodies, contact, point) + gapOf(way, contact, point);
     }
-    setMasses(bodies, contact);
+    contact.met = true;
   };
   if (count == 0) {
     settle();

@@ -93,8 +93,9 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
       const Vec2 shift = broad.shiftOf(pair.key);
       double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
       if (clear <= pair.margin)
-        clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, memory_.data() + pair.first,
-                             pair.count, calm_, {});
+        clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, calm_, {});
+      for (std::size_t c = calmFirst_[k]; c < calm_.size(); ++c)
+        inheritImpulses(memory_.data() + pair.first, pair.count, calm_[c]);
       pair.apart = clear >= pair.margin;
       pair.margin = std::max(pair.margin, clear);
     } else if (!livelyPair_[k]) {
@@ -107,7 +108,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     }
   }
   calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
-  for (Contact& contact : lively_) contact.total = contact.approach = 0;
+  for (SolvedContact& contact : lively_) contact.total = contact.approach = 0;
   dropped_.assign(calm_.size(), 0);
 }
 
@@ -158,8 +159,8 @@ void NarrowPhase::askAhead(std::size_t at, KeyOf&& keyOf, const Bodies& bodies) 
 }
 
 void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, int count) {
-  LivelyPair made{key, static_cast<int>(lively_.size()), count, false, 0, pair};
-  lively_.insert(lively_.end(), old, old + count);
+  LivelyPair made{key, static_cast<int>(lively_.size()), count, false, -1, pair};
+  for (int k = 0; k < count; ++k) lively_.emplace_back(old[k]);
   pairs_.push_back(made);
 }
 
@@ -221,7 +222,7 @@ void NarrowPhase::refreshNew(const Bodies& bodies, const BroadPhase& broad, doub
     const double later = since ? std::max((*since)[pair.key.a], (*since)[pair.key.b]) : 0;
     next_.clear();
     const double clear = finder_.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h, pair.swept,
-                                      lively_.data() + pair.first, pair.count, next_, {later, {}, {}});
+                                      next_, {later, {}, {}});
     pair.clear = !next_.empty() && !pair.swept ? pair.reuse : clear - pair.near;
     replace(pair, bodies);
   }
@@ -239,7 +240,7 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
     const int a = pair.key.a, b = pair.key.b;
     const auto begin = lively_.begin() + pair.first, end = begin + pair.count;
     if ((!wasStruck(a) && !wasStruck(b)) ||
-        std::any_of(begin, end, [](const Contact& c) { return c.struck; }))
+        std::any_of(begin, end, [](const SolvedContact& c) { return c.struck; }))
       return false;
     const double way = relativeSpeed(bodies, a, b) * h;
     auto reach = [&](int body) {
@@ -258,8 +259,7 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
     const double reach = margin + length(struck[a].linear()) + length(struck[b].linear());
     next_.clear();
     if (clearance(bodies, pair.key, broad.shiftOf(pair.key), reach + way) <= reach + way)
-      finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept,
-                   lively_.data() + pair.first, pair.count, next_,
+      finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept, next_,
                    {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
     replace(pair, bodies);
   }
@@ -276,15 +276,17 @@ void NarrowPhase::dropContacts(const LivelyPair& pair) {
 /// Puts what is in next_ into the place of a pair's contacts, or behind all others.
 void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
   const int count = static_cast<int>(next_.size());
-  for (Contact& contact : next_) setMasses(bodies, contact);
+  for (Contact& contact : next_) inheritImpulses(lively_.data() + pair.first, pair.count, contact);
   dropContacts(pair);
-  if (count <= pair.count) {
-    std::copy(next_.begin(), next_.end(), lively_.begin() + pair.first);
-  } else {
+  if (count > pair.count) {
     pair.first = static_cast<int>(lively_.size());
-    lively_.insert(lively_.end(), next_.begin(), next_.end());
+    lively_.resize(lively_.size() + count);
   }
   pair.count = count;
+  for (int k = 0; k < count; ++k) {
+    SolvedContact& contact = lively_[pair.first + k] = SolvedContact(next_[k]);
+    setMasses(bodies, contact);
+  }
 }
 
 NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>* struck,
@@ -390,7 +392,8 @@ void NarrowPhase::endStep(BroadPhase& broad) {
 }
 
 std::size_t NarrowPhase::bytes() const {
-  return (calm_.capacity() + lively_.capacity() + next_.capacity() + memory_.capacity()) * sizeof(Contact) +
+  return (calm_.capacity() + next_.capacity() + memory_.capacity()) * sizeof(Contact) +
+         lively_.capacity() * sizeof(SolvedContact) +
          pairs_.capacity() * sizeof(LivelyPair);
 }
 

@@ -50,8 +50,8 @@ class NarrowPhase {
 
   std::vector<Contact>& calm() { return calm_; }
   const std::vector<Contact>& calm() const { return calm_; }
-  std::vector<Contact>& lively() { return lively_; }
-  const std::vector<Contact>& lively() const { return lively_; }
+  std::vector<SolvedContact>& lively() { return lively_; }
+  const std::vector<SolvedContact>& lively() const { return lively_; }
   /// Contacts of a lively pair count only while it is so: calm ones that were dropped.
   bool isDropped(int calm) const { return dropped_[calm]; }
   std::size_t bytes() const;
@@ -61,7 +61,7 @@ class NarrowPhase {
     PairKey key;
     int first = 0, count = 0;    // in lively_
     bool swept = false;          // could pass through each other within a sub-step
-    double clear = 0;            // what was found holds until they have moved so far against each other, m
+    double clear = -1;           // what was found holds until they have moved so far against each other, m
     int pair = -1;               // in the broad phase's list; -1: found within the step
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
@@ -95,7 +95,8 @@ class NarrowPhase {
   template <class KeyOf>
   void askAhead(std::size_t at, KeyOf&& keyOf, const Bodies& bodies) const;
 
-  std::vector<Contact> calm_, lively_, next_, memory_;
+  std::vector<Contact> calm_, next_, memory_;
+  std::vector<SolvedContact> lively_;
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
   std::size_t refreshed_ = 0;  // so many of them have been looked at in this sub-step

@@ -25,7 +25,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
     }
     return false;
   };
-  for (const Contact& c : lively_)
+  for (const SolvedContact& c : lively_)
     if (isCrushed(c)) {
       if (bodies.moves(c.a)) crushed_.push_back(c.a);
       if (bodies.moves(c.b)) crushed_.push_back(c.b);
@@ -44,7 +44,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
     const auto at = std::lower_bound(crushed_.begin(), crushed_.end(), body);
     return at != crushed_.end() && *at == body ? static_cast<int>(at - crushed_.begin()) : -1;
   };
-  for (Contact& c : lively_) {
+  for (SolvedContact& c : lively_) {
     const int a = place(c.a), b = place(c.b);
     if (a >= 0) crushSpeed_[a] = std::max(crushSpeed_[a], speed(c.b));
     if (b >= 0) crushSpeed_[b] = std::max(crushSpeed_[b], speed(c.a));
@@ -64,7 +64,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
     if (turning > most) v.turn *= most / turning;
   }
   if (!any) return;
-  for (Contact& c : lively_) {
+  for (SolvedContact& c : lively_) {
     const int a = place(c.a), b = place(c.b);
     if ((a >= 0 && crushSpeed_[a] < 0) || (b >= 0 && crushSpeed_[b] < 0))
       for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;

@@ -68,8 +68,7 @@ void PairContacts::prefetch(const Bodies& bodies, int body, bool soon) {
 }
 
 double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
-                          bool swept, const Contact* old, int oldCount, std::vector<Contact>& found,
-                          const Later& later) {
+                          bool swept, std::vector<Contact>& found, const Later& later) {
   auto ahead = [&](int body, const Motion& struck) -> Motion {
     const Motion& v = bodies.velocity[body];
     return {struck.x + later.time * v.x, struck.y + later.time * v.y, struck.turn + later.time * v.turn};
@@ -120,7 +119,7 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
     contact.normal = manifold.normal;
     contact.shift = shift;
     contact.count = manifold.count;
-    contact.face = manifold.face;
+    contact.face = static_cast<std::int8_t>(manifold.face);
     contact.friction = std::sqrt(a.friction * b.friction);
     contact.bounce = std::max(a.bounce, b.bounce);
     for (int k = 0; k < manifold.count; ++k) {
@@ -136,17 +135,6 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
               aheadB.turn * cross(p.armB, contact.normal) + aheadA.turn * cross(p.armA, contact.normal);
       p.armA = p.armA + later.time * bodies.velocity[key.a].linear();
       p.armB = p.armB + later.time * bodies.velocity[key.b].linear();
-    }
-    for (int o = 0; o < oldCount; ++o) {
-      const Contact& before = old[o];
-      if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
-      contact.approach = std::max(contact.approach, before.approach);
-      for (int k = 0; k < contact.count; ++k)
-        for (int l = 0; l < before.count; ++l)
-          if (before.points[l].feature == contact.points[k].feature) {
-            contact.points[k].impulseN = before.points[l].impulseN;
-            contact.points[k].impulseT = before.points[l].impulseT;
-          }
     }
   };
   const ConvexPiece *onlyA = bodies.extent[key.a].only, *onlyB = bodies.extent[key.b].only;

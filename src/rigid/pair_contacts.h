@@ -29,6 +29,22 @@ double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double en
 /// much since.
 void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contact& contact);
 
+/// Gives a contact the impulses of the one of `old` that is between the same pieces, point by point.
+template <class Old>
+void inheritImpulses(const Old* old, int count, Contact& contact) {
+  for (int o = 0; o < count; ++o) {
+    const Contact& before = old[o];
+    if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
+    contact.approach = std::max(contact.approach, before.approach);
+    for (int k = 0; k < contact.count; ++k)
+      for (int l = 0; l < before.count; ++l)
+        if (before.points[l].feature == contact.points[k].feature) {
+          contact.points[k].impulseN = before.points[l].impulseN;
+          contact.points[k].impulseT = before.points[l].impulseT;
+        }
+  }
+}
+
 class PairContacts {
  public:
   /// The moment within the sub-step from which contacts are looked for, and what impacts before it have
@@ -37,11 +53,10 @@ class PairContacts {
     double time = 0;
     Motion struckA, struckB;
   };
-  /// Adds the contacts of a pair whose gap is below `margin`, with the impulses of its `old` ones; `swept`:
-  /// of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any.
-  /// They are without effective masses.
+  /// Adds the contacts of a pair whose gap is below `margin`; `swept`: of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any.
+  /// They are without impulses.
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
-              const Contact* old, int oldCount, std::vector<Contact>& found, const Later& later);
+              std::vector<Contact>& found, const Later& later);
 
   /// Asks the memory for what find() will read of a body of one piece: long before, and soon before.
   static void prefetch(const Bodies& bodies, int body, bool soon);

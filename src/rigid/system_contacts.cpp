@@ -88,8 +88,8 @@ void RigidSystem::State::findCalmShare() {
     const Motion &v = bodies.velocity[b], &was = start[b];
     calmShare[b] = {v.x - was.x, v.y - was.y, v.turn - was.turn};
   }
-  auto takeOut = [&](const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts)
+  auto takeOut = [&](const std::vector<SolvedContact>& contacts) {
+    for (const SolvedContact& contact : contacts)
       for (int k = 0; k < contact.count; ++k) {
         const ContactPoint& p = contact.points[k];
         const Vec2 j = p.impulseN * contact.normal + p.impulseT * perpendicular(contact.normal);
@@ -125,13 +125,13 @@ void RigidSystem::State::sweepRough(double h, double change) {
   if (change <= enough) return;
   blocks.beginRough(place);
   rough.clear();
-  for (std::vector<Contact>* contacts : {&spare, &narrow.lively()})
-    for (Contact& contact : *contacts)
+  for (std::vector<SolvedContact>* contacts : {&spare, &narrow.lively()})
+    for (SolvedContact& contact : *contacts)
       if (contact.change >= place) rough.push_back(&contact);
   for (int more = 0; more < kRoughSweeps && change > enough; ++more) {
     change = blocks.sweepRough(bodies, place);
     std::size_t kept = 0;
-    for (Contact* contact : rough) {
+    for (SolvedContact* contact : rough) {
       change = std::max(change, solve(bodies, *contact));
       if (contact->change >= place) rough[kept++] = contact;
     }

@@ -91,9 +91,10 @@ struct RigidSystem::State {
   NarrowPhase narrow;
   ContactBlocks blocks;
   std::vector<int> uncoloured;  // calm contacts that found no colour: solved one by one
-  std::vector<Contact> spare;   // those
+  std::vector<SolvedContact> spare;  // those
   std::vector<int> bouncing;    // calm contacts that may bounce
-  std::vector<Contact*> bouncers, rough;
+  std::vector<Contact*> bouncers;
+  std::vector<SolvedContact*> rough;
   ConjugateSweeps conjugate;
   Impacts impact;
   Press press;

@@ -1,6 +1,7 @@
 // The stages of a step of bodies.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/maths.h"
@@ -140,7 +141,7 @@ void RigidSystem::State::beginStep(double step) {
   blocks.build(bodies, narrow.calm(), uncoloured, pull > 0 ? (1 / pull) * gravity : Vec2{});
   spare.clear();
   for (const int k : uncoloured) {
-    spare.push_back(narrow.calm()[k]);
+    spare.emplace_back(narrow.calm()[k]);
     setMasses(bodies, spare.back());
   }
   mayBounce = false;
@@ -189,6 +190,8 @@ void RigidSystem::State::bounce(double h) {
   if (damped) bodies.inverse.swap(forImpacts);
   impacts(h);
   if (damped) bodies.inverse.swap(forImpacts);
+  for (SolvedContact& contact : narrow.lively())
+    if (std::exchange(contact.met, false)) setMasses(bodies, contact);
   if (!anyStruck) return;
   // From here on the bodies go straight ways, as if they had come from where these begin.
   for (int b = kWalls; b < bodies.count(); ++b) {
