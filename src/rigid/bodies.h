@@ -53,6 +53,7 @@ struct Surface {
   double bounce = 0, friction = 0.5;
   double gravityScale = 1;
   bool isDriven = false;  // has no mass: nothing moves it but moveTo()
+  bool operator==(const Surface&) const = default;
 };
 
 struct Bodies {
@@ -74,10 +75,15 @@ struct Bodies {
     const std::pair<int, int> pair = std::minmax(a, b);
     return !joined.empty() && std::binary_search(joined.begin(), joined.end(), pair);
   }
+  bool surfacesChanged = true;  // since the step before
   void takeSurfaces() {
+    surfacesChanged = surface.size() != def.size();
     surface.resize(def.size());
-    for (std::size_t b = 0; b < def.size(); ++b)
-      surface[b] = {def[b].bounce, def[b].friction, def[b].gravityScale, def[b].mass <= 0};
+    for (std::size_t b = 0; b < def.size(); ++b) {
+      const Surface now{def[b].bounce, def[b].friction, def[b].gravityScale, def[b].mass <= 0};
+      surfacesChanged |= surface[b] != now;
+      surface[b] = now;
+    }
   }
   int count() const { return static_cast<int>(def.size()); }
   bool moves(int body) const { return inverse[body].mass > 0; }

@@ -101,8 +101,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     } else if (!livelyPair_[k]) {
       calm_.insert(calm_.end(), memory_.begin() + pair.first, memory_.begin() + pair.first + pair.count);
       for (auto c = calm_.end() - pair.count; c != calm_.end(); ++c) {
-        c->friction = std::sqrt(bodies.surface[c->a].friction * bodies.surface[c->b].friction);
-        c->bounce = std::max(bodies.surface[c->a].bounce, bodies.surface[c->b].bounce);
+        if (bodies.surfacesChanged) setSurfaces(bodies, *c);
         c->total = c->approach = 0;
       }
     }

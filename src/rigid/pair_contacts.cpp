@@ -31,6 +31,12 @@ double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double en
   return std::max({circles, boxA, distanceFrom(b, fb, pa) - a.reach});
 }
 
+void setSurfaces(const Bodies& bodies, Contact& contact) {
+  const Surface &a = bodies.surface[contact.a], &b = bodies.surface[contact.b];
+  contact.friction = std::sqrt(a.friction * b.friction);
+  contact.bounce = std::max(a.bounce, b.bounce);
+}
+
 void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contact& contact) {
   for (int k = 0; k < contact.count; ++k)
     contact.points[k].gap += gapMoved(bodies, contact, contact.points[k]);
@@ -81,7 +87,6 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
   }
   fb.position = fb.position + shift;
   const double rest = h - later.time;
-  const Surface &a = bodies.surface[key.a], &b = bodies.surface[key.b];
   double clear = 1e300;
   Manifold manifold;
   auto meet = [&](const ConvexPiece& pa, const ConvexPiece& pb, PiecePair pieces) {
@@ -120,8 +125,7 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
     contact.shift = shift;
     contact.count = manifold.count;
     contact.face = static_cast<std::int8_t>(manifold.face);
-    contact.friction = std::sqrt(a.friction * b.friction);
-    contact.bounce = std::max(a.bounce, b.bounce);
+    setSurfaces(bodies, contact);
     for (int k = 0; k < manifold.count; ++k) {
       ContactPoint& p = contact.points[k];
       p.armA = manifold.points[k].point - ta.position;

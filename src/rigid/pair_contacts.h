@@ -24,6 +24,8 @@ inline double relativeSpeed(const Bodies& bodies, int a, int b) {
 /// A bound from below on how far two bodies are apart, m: by the circles around them, then by the box of one
 /// and the circle of the other. `enough`: what needs no better one.
 double clearance(const Bodies& bodies, const PairKey& key, Vec2 shift, double enough);
+/// Friction and bounce of a contact, from its bodies'.
+void setSurfaces(const Bodies& bodies, Contact& contact);
 /// Moves a contact along with its bodies, which have moved a little since it was found: the normal turns with
 /// the one whose edge it stands on, the points go with the other one's corners. `turned`: by body, by how
 /// much since.

@@ -356,25 +356,26 @@ void RigidSystem::State::endStep(double step) {
   giveBackSpare();
   contactTotals = {};
   const bool pressing = press.begin(bodies);
-  auto count = [&](const Contact& contact) {
-    if (pressing) press.add(bodies, contact);
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactPoint& p = contact.points[k];
-      const double gap = p.gap + gapMoved(bodies, contact, p);
-      contactTotals.contacts += p.impulseN > 0 || gap <= 0;
-      contactTotals.overlap = std::max(contactTotals.overlap, -gap);
-    }
+  auto count = [&](const ContactPoint& p, double gap) {
+    contactTotals.contacts += p.impulseN > 0 || gap <= 0;
+    contactTotals.overlap = std::max(contactTotals.overlap, -gap);
   };
-  for (const Contact& contact : narrow.lively()) count(contact);
+  for (const SolvedContact& contact : narrow.lively()) {
+    if (pressing) press.add(bodies, contact);
+    for (int k = 0; k < contact.count; ++k)
+      count(contact.points[k], contact.points[k].gap + gapMoved(bodies, contact, contact.points[k]));
+  }
   turned.resize(bodies.count());
   for (int b = 0; b < bodies.count(); ++b) turned[b] = turnedBy({}, bodies.moved[b].turn);
   const auto ofLively = static_cast<std::ptrdiff_t>(touches.size());
   for (std::size_t k = 0; k < narrow.calm().size(); ++k) {
     Contact& contact = narrow.calm()[k];
     blocks.readBack(static_cast<int>(k), contact);
-    if (!narrow.isDropped(static_cast<int>(k))) count(contact);
+    const bool counts = !narrow.isDropped(static_cast<int>(k));
+    if (counts && pressing) press.add(bodies, contact);
     collectTouch(contact);
     bringUpToDate(bodies, turned, contact);  // it may be used again
+    for (int p = 0; counts && p < contact.count; ++p) count(contact.points[p], contact.points[p].gap);
   }
   if (pressing) press.end(bodies);
   sortTouches(ofLively);
