@@ -23,7 +23,8 @@ void eachImpulse(ContactBlocks& blocks, std::vector<SolvedContact>& spare, std::
 }  // namespace
 
 void ConjugateSweeps::list(const Bodies& bodies, const ContactBlocks& blocks,
-                           const std::vector<SolvedContact>& spare, const std::vector<SolvedContact>& lively) {
+                           const std::vector<SolvedContact>& spare,
+                           const std::vector<SolvedContact>& lively) {
   isListed_.assign(bodies.count(), 0);
   auto add = [&](int body) {
     if (isListed_[body] || !bodies.moves(body)) return;

@@ -7,8 +7,8 @@
 namespace smokebox {
 
 struct ContactPoint {
-  Vec2 armA, armB;              // from each body's centre of mass
-  double gap = 0;               // m, below 0: overlap; for the bodies' places when the contact was found
+  Vec2 armA, armB;  // from each body's centre of mass
+  double gap = 0;   // m, below 0: overlap; for the bodies' places when the contact was found
   double impulseN = 0, impulseT = 0;  // N s of a sub-step
   std::uint32_t feature = 0;
 };

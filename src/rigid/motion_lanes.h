@@ -1,6 +1,10 @@
 // Motions of several bodies at once: in the memory the numbers of each body lie side by side, in lanes those
 // of one kind.
 #pragma once
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 #include "rigid/bodies.h"
 #include "rigid/wide_lanes.h"
 
@@ -18,6 +22,27 @@ constexpr int kNumbers = 4;  // in a Motion
 static_assert(sizeof(Motion) == kNumbers * sizeof(double));
 typedef float Four __attribute__((vector_size(16)));
 
+// GCC 12 converts in halves, and goes round about where halves are joined: told what to take, it is a fifth
+// faster.
+#ifdef __AVX__
+inline Lanes widened(Four a) { return reinterpret_cast<Lanes>(_mm256_cvtps_pd(reinterpret_cast<__m128>(a))); }
+inline FloatLanes eightOf(Four low, Four high) {
+  return reinterpret_cast<FloatLanes>(
+      _mm256_set_m128(reinterpret_cast<__m128>(high), reinterpret_cast<__m128>(low)));
+}
+inline Lanes halves(Lanes low, Lanes high) {
+  return reinterpret_cast<Lanes>(
+      _mm256_blend_pd(reinterpret_cast<__m256d>(low), reinterpret_cast<__m256d>(high), 0b1100));
+}
+#else
+inline Lanes widened(Four a) { return __builtin_convertvector(a, Lanes); }
+inline FloatLanes eightOf(Four low, Four high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+/// The first two of `low`, the last two of `high`.
+inline Lanes halves(Lanes low, Lanes high) { return __builtin_shufflevector(low, high, 0, 1, 6, 7); }
+#endif
+
 /// A body's motion; `at` counts numbers, not bodies: that needs no multiplication.
 inline Lanes row(const Motion* from, int at) { return *reinterpret_cast<const Lanes*>(&from->x + at); }
 inline void addTo(Motion* to, int at, Lanes by) { *reinterpret_cast<Lanes*>(&to->x + at) += by; }
@@ -27,7 +52,7 @@ inline void addTo(Motion* to, int at, Lanes by) { *reinterpret_cast<Lanes*>(&to-
 inline Lanes against(const Motion* of, int atA, int atB) {
   const Lanes a = row(of, atA), b = row(of, atB), apart = b - a;
   const Lanes turns = __builtin_shufflevector(b, a, 0, 4, 2, 6);
-  return __builtin_shufflevector(apart, turns, 0, 1, 6, 7);
+  return halves(apart, turns);
 }
 
 [[gnu::always_inline]] inline void gather(const Motion* of, const int* a, const int* b, Relative<Lanes>& to) {
@@ -46,7 +71,7 @@ inline Lanes against(const Motion* of, int atA, int atB) {
   auto two = [&](int k) {
     const Four low = __builtin_convertvector(against(of, a[k], b[k]), Four),
                high = __builtin_convertvector(against(of, a[k + 4], b[k + 4]), Four);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    return eightOf(low, high);
   };
   const FloatLanes r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
   const FloatLanes xy01 = __builtin_shufflevector(r0, r1, 0, 8, 1, 9, 4, 12, 5, 13),
@@ -91,8 +116,8 @@ template <class Wide>
                    turn01 = __builtin_shufflevector(turn, zero, 0, 8, 1, 9, 4, 12, 5, 13),
                    turn23 = __builtin_shufflevector(turn, zero, 2, 10, 3, 11, 6, 14, 7, 15);
   auto add = [&](int k, FloatLanes both) {
-    addTo(to, at[k], __builtin_convertvector(__builtin_shufflevector(both, both, 0, 1, 2, 3), Lanes));
-    addTo(to, at[k + 4], __builtin_convertvector(__builtin_shufflevector(both, both, 4, 5, 6, 7), Lanes));
+    addTo(to, at[k], widened(__builtin_shufflevector(both, both, 0, 1, 2, 3)));
+    addTo(to, at[k + 4], widened(__builtin_shufflevector(both, both, 4, 5, 6, 7)));
   };
   add(0, __builtin_shufflevector(xy01, turn01, 0, 1, 8, 9, 4, 5, 12, 13));
   add(1, __builtin_shufflevector(xy01, turn01, 2, 3, 10, 11, 6, 7, 14, 15));

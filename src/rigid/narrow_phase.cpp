@@ -392,8 +392,7 @@ void NarrowPhase::endStep(BroadPhase& broad) {
 
 std::size_t NarrowPhase::bytes() const {
   return (calm_.capacity() + next_.capacity() + memory_.capacity()) * sizeof(Contact) +
-         lively_.capacity() * sizeof(SolvedContact) +
-         pairs_.capacity() * sizeof(LivelyPair);
+         lively_.capacity() * sizeof(SolvedContact) + pairs_.capacity() * sizeof(LivelyPair);
 }
 
 }  // namespace smokebox

@@ -55,8 +55,8 @@ class PairContacts {
     double time = 0;
     Motion struckA, struckB;
   };
-  /// Adds the contacts of a pair whose gap is below `margin`; `swept`: of pieces that meet within `h` seconds. Gives how far the two are surely apart: 0 where there are any.
-  /// They are without impulses.
+  /// Adds the contacts of a pair whose gap is below `margin`; `swept`: of pieces that meet within `h`
+  /// seconds. Gives how far the two are surely apart: 0 where there are any. They are without impulses.
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
               std::vector<Contact>& found, const Later& later);
 

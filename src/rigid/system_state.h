@@ -90,9 +90,9 @@ struct RigidSystem::State {
   BroadPhase broad;
   NarrowPhase narrow;
   ContactBlocks blocks;
-  std::vector<int> uncoloured;  // calm contacts that found no colour: solved one by one
+  std::vector<int> uncoloured;       // calm contacts that found no colour: solved one by one
   std::vector<SolvedContact> spare;  // those
-  std::vector<int> bouncing;    // calm contacts that may bounce
+  std::vector<int> bouncing;         // calm contacts that may bounce
   std::vector<Contact*> bouncers;
   std::vector<SolvedContact*> rough;
   ConjugateSweeps conjugate;
