@@ -1,6 +1,9 @@
 // Several numbers at a time. What is done lane by lane, and summed in this order, is the same on any machine.
 #pragma once
 #include <cstring>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace smokebox {
 // Of its own: base/lanes.h has functions of these names for sixteen floats.
@@ -42,6 +45,16 @@ inline void loadAs(const float* from, Lanes& lanes) {
 }
 inline void store(double* to, Lanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
 inline void store(float* to, FloatLanes lanes) { std::memcpy(to, &lanes, sizeof lanes); }
+
+/// Is any lane of a comparison set?
+template <class Mask>
+bool anyOf(Mask mask) {
+#ifdef __AVX__
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+#else
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
+}
 
 inline double sumOf(Lanes lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
 inline double sumOf(FloatLanes lanes) {

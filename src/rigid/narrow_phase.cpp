@@ -32,10 +32,16 @@ constexpr double kAhead = 4;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
-inline Lanes absolute(Lanes a) { return a < 0 ? -a : a; }
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
+
+// A third of the way for each axis.
+void NarrowPhase::Expected::setLimit(double to) {
+  limit = to;
+  const double part = to / 3, turn = reach > 0 ? part / reach : kNoBound;
+  within = {part * part, part * part, turn * turn};
+}
 
 void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
   const int count = bodies.count();
@@ -52,7 +58,8 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
     const double room = moves ? fall + kStray * bodies.extent[b].thinnest : 0;
     const Extent& extent = bodies.extent[b];
-    expected_[b] = {v, room, moves ? room : kNoBound, extent.turningReach};
+    expected_[b] = {v, room, 0, extent.turningReach, 0, {}};
+    expected_[b].setLimit(moves ? room : kNoBound);
     const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
     seen_[b] = {bodies.position[b],
                 v.linear(),
@@ -315,9 +322,9 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
     Lanes on = h * load(&bodies.velocity[b].x) - h * load(&e.velocity.x);
     if (struck) on += load(&(*struck)[b].x);
     const Lanes off = load(&bodies.moved[b].x) + on - elapsed * load(&e.velocity.x), then = off + later * on;
-    // Most are far from leaving, which the sum of what they are off along each axis tells.
-    const Lanes a = absolute(off), c = absolute(then), most = a > c ? a : c;
-    if (most[0] + most[1] + most[2] * e.reach <= e.limit) continue;
+    // Most are far from leaving.
+    const Lanes a = off * off, c = then * then;
+    if (!anyOf((a > c ? a : c) > load(&e.within.x))) continue;
     auto leaves = [&](Lanes by) {
       const double left = e.limit - std::abs(by[2]) * e.reach;
       return left < 0 || by[0] * by[0] + by[1] * by[1] > left * left;
@@ -329,7 +336,7 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
   }
   for (const int b : leaving_) {
     expected_[b].velocity = bodies.velocity[b];
-    expected_[b].limit = kNoBound;
+    expected_[b].setLimit(kNoBound);
     stirred_.push_back(b);
   }
   if (leaving_.empty() && turned_.empty()) return Stir::none;

@@ -66,10 +66,13 @@ class NarrowPhase {
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
   struct Expected {
-    Motion velocity;   // at the step's start
-    double room = 0;   // how far its points may be from where that takes them, m
-    double limit = 0;  // the same while its pairs are calm and may be stirred, else without bound
-    double reach = 0;  // how far a turn moves its points, m/rad
+    Motion velocity;       // at the step's start
+    double room = 0;       // how far its points may be from where that takes them, m
+    double limit = 0;      // the same while its pairs are calm and may be stirred, else without bound
+    double reach = 0;      // how far a turn moves its points, m/rad
+    double unused = 0;
+    Motion within{0, 0, 0};  // who is not off by more, squared, along any axis does not leave; see setLimit()
+    void setLimit(double to);
   };
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair, const Bodies& bodies);

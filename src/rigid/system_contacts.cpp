@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rigid/contact_sweeps.h"
+#include "rigid/lanes.h"
 #include "rigid/system_state.h"
 
 namespace smokebox {
@@ -34,11 +35,9 @@ void RigidSystem::State::warmStartAll(double h) {
   start.resize(bodies.count());
   if (shareKnown) {  // the calm contacts' normals and arms are the same all through the step: so is their sum
     for (int b = 0; b < bodies.count(); ++b) {
-      Motion& v = bodies.velocity[b];
-      start[b] = v;
-      v.x += calmShare[b].x;
-      v.y += calmShare[b].y;
-      v.turn += calmShare[b].turn;
+      const Lanes v = load(&bodies.velocity[b].x);
+      store(&start[b].x, v);
+      store(&bodies.velocity[b].x, v + load(&calmShare[b].x));
     }
   } else {
     start = bodies.velocity;
@@ -84,10 +83,8 @@ void RigidSystem::State::findCalmShare() {
   // After contacts were dropped or found anew, not all that the velocities gained is on record.
   shareKnown = springs.empty() && joints.empty() && !stirred;
   if (!shareKnown) return;
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    const Motion &v = bodies.velocity[b], &was = start[b];
-    calmShare[b] = {v.x - was.x, v.y - was.y, v.turn - was.turn};
-  }
+  for (int b = kWalls; b < bodies.count(); ++b)
+    store(&calmShare[b].x, load(&bodies.velocity[b].x) - load(&start[b].x));
   auto takeOut = [&](const std::vector<SolvedContact>& contacts) {
     for (const SolvedContact& contact : contacts)
       for (int k = 0; k < contact.count; ++k) {

@@ -78,7 +78,7 @@ struct RigidSystem::State {
   /// What a time does to a body's velocity by itself: gravity, and damping that decays exponentially.
   struct Drive {
     Vec2 gain;                       // m/s
-    double linear = 1, angular = 1;  // what is left of it
+    double linear = 1, angular = 1;  // what is left of it; read in one with the gain
   };
   Drive driveOver(const BodyDef& def, double time) const;
   /// Damping takes its share of what a force gives a body in a sub-step, as it does of what gravity gives:

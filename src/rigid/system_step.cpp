@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/maths.h"
 #include "rigid/contact_sweeps.h"
+#include "rigid/lanes.h"
 #include "rigid/system_state.h"
 
 namespace smokebox {
@@ -174,11 +175,11 @@ void RigidSystem::State::predict(double h) {
     if (beforeThat.size() != before.size()) beforeThat = before;
   }
   for (int b = kWalls; b < bodies.count(); ++b) {
-    Motion& v = bodies.velocity[b];
-    const Drive& drive = drives[b];
-    v.x = drive.linear * v.x + drive.gain.x;
-    v.y = drive.linear * v.y + drive.gain.y;
-    v.turn *= drive.angular;
+    const Lanes drive = load(&drives[b].gain.x), zero{};
+    const Lanes left = __builtin_shufflevector(drive, drive, 2, 2, 3, 3),
+                gain = __builtin_shufflevector(drive, zero, 0, 1, 6, 7);
+    double* v = &bodies.velocity[b].x;
+    store(v, left * load(v) + gain);
   }
   narrow.refresh(bodies, broad, h, nullptr);
 }
@@ -246,20 +247,13 @@ bool RigidSystem::State::meetsFast(const Contact& contact, double h) const {
 void RigidSystem::State::moveOn(double h) {
   const bool mayPass = narrow.mayPass(bodies, h);
   if (mayPass) {
-    for (int b = kWalls; b < bodies.count(); ++b) {
-      const Motion& v = bodies.velocity[b];
-      way[b] = {h * v.x, h * v.y, h * v.turn};
-    }
+    for (int b = kWalls; b < bodies.count(); ++b) store(&way[b].x, h * load(&bodies.velocity[b].x));
     narrow.stopPassing(bodies, broad, h, anyStruck ? &impact.moments() : nullptr, way);
   }
   const std::vector<Motion>& by = mayPass ? way : bodies.velocity;
   const double times = mayPass ? 1 : h;
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    Motion& m = bodies.moved[b];
-    m.x += times * by[b].x;
-    m.y += times * by[b].y;
-    m.turn += times * by[b].turn;
-  }
+  for (int b = kWalls; b < bodies.count(); ++b)
+    store(&bodies.moved[b].x, load(&bodies.moved[b].x) + times * load(&by[b].x));
 }
 
 void RigidSystem::State::move(double h) {
