@@ -82,10 +82,11 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     BodyPair& pair = pairs[k];
     const Seen &a = seen_[pair.key.a], &b = seen_[pair.key.b];
-    if (movesFast(a, b, slow, dt)) {
+    const double way = relativeWay(a, b, dt);
+    if (movesFast(a, b, way, slow, dt)) {
       livelyPair_[k] = 1;
       makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
-    } else if (!mayKeep(a, b, pair, broad.shiftOf(pair.key), dt)) {
+    } else if (!mayKeep(a, b, pair, broad.shiftOf(pair.key), way)) {
       due_.push_back(static_cast<int>(k));
     }
   }
@@ -124,8 +125,8 @@ double NarrowPhase::relativeWay(const Seen& a, const Seen& b, double dt) {
          dt;
 }
 
-bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double slow, double dt) {
-  const double thin = std::min(a.thinnest, b.thinnest), way = relativeWay(a, b, dt);
+bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double way, double slow, double dt) {
+  const double thin = std::min(a.thinnest, b.thinnest);
   const bool bounces = a.bounces || b.bounces;
   const double turn = std::max(std::abs(a.turn), std::abs(b.turn)) * dt;
   return ((a.pushes || b.pushes) && way > kReuse * thin) ||
@@ -133,9 +134,9 @@ bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double slow, double dt
          (way > kCalmTurning * thin && turn > kCalmTurn);
 }
 
-bool NarrowPhase::mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double dt) const {
+bool NarrowPhase::mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double way) const {
   const double thin = std::min(a.thinnest, b.thinnest);
-  const double margin = relativeWay(a, b, dt) + a.room + b.room;
+  const double margin = way + a.room + b.room;
   const Vec2 between = b.position + shift - a.position;
   const double turnedA = std::abs(a.angleRad - pair.angleA), turnedB = std::abs(b.angleRad - pair.angleB);
   const double since = length(between - pair.between) + turnedA * a.turningReach + turnedB * b.turningReach;

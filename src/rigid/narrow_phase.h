@@ -66,10 +66,10 @@ class NarrowPhase {
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
   struct Expected {
-    Motion velocity;       // at the step's start
-    double room = 0;       // how far its points may be from where that takes them, m
-    double limit = 0;      // the same while its pairs are calm and may be stirred, else without bound
-    double reach = 0;      // how far a turn moves its points, m/rad
+    Motion velocity;   // at the step's start
+    double room = 0;   // how far its points may be from where that takes them, m
+    double limit = 0;  // the same while its pairs are calm and may be stirred, else without bound
+    double reach = 0;  // how far a turn moves its points, m/rad
     double unused = 0;
     Motion within{0, 0, 0};  // who is not off by more, squared, along any axis does not leave; see setLimit()
     void setLimit(double to);
@@ -88,9 +88,9 @@ class NarrowPhase {
   };
   static double relativeWay(const Seen& a, const Seen& b, double dt);
   /// Do the bodies of a pair move too much in a step for what was found at its start?
-  static bool movesFast(const Seen& a, const Seen& b, double slow, double dt);
+  static bool movesFast(const Seen& a, const Seen& b, double way, double slow, double dt);
   /// Do the contacts of the last step still hold? If not: notes for which places they are found now.
-  bool mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double dt) const;
+  bool mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double way) const;
   /// Is a lively pair to be looked at in this sub-step?
   bool isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, double h);
   void dropContacts(const LivelyPair& pair);
