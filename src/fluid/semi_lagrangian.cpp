@@ -10,9 +10,9 @@ namespace smokebox {
 namespace {
 
 constexpr int kRowGrain = 8;
-constexpr int kTile = 32;   // faces of a row that are worked on together
-constexpr int kRun = 16;    // of these, those that are looked at for places side by side
-constexpr int kBlock = 16;  // cells along a side of the blocks that are looked through for solids
+constexpr int kTile = 32;  // faces of a row that are worked on together
+constexpr int kRun = 16;   // of these, those that are looked at for places side by side
+constexpr int kBlock = 4;  // cells along a side of the blocks that are looked through for solids
 
 // The 4 samples of a row that an interpolation reads, or their weights.
 typedef float Quad __attribute__((vector_size(16), aligned(4), may_alias));
@@ -79,7 +79,9 @@ inline bool sideBySide(const int* at) {
 struct Feet {
   alignas(64) int at[kTile];                       // the sample below and to the left
   alignas(64) float shareX[kTile], shareY[kTile];  // how far beyond it
-  float reachX = 0, reachY = 0;                    // no path is longer than this, cells
+  // How far the paths lead to either side, cells: each of them, and all.
+  alignas(64) float left[kTile], right[kTile], down[kTile], up[kTile];
+  float mostLeft = 0, mostRight = 0, mostDown = 0, mostUp = 0;
 };
 
 /// Paths far from solids, many at a time.
@@ -169,9 +171,8 @@ class OpenPaths {
     const float half = -0.5f * scale_, whole = -scale_;
     const auto row = static_cast<float>(j), sizeX = static_cast<float>(boundary_.grid.nx),
                sizeY = static_cast<float>(boundary_.grid.ny);
-    float reachX = 0, reachY = 0;
     Places inU, inV;
-#pragma omp simd reduction(max : reachX, reachY)
+#pragma omp simd
     for (int k = 0; k < count; ++k) {
       const auto column = static_cast<float>(begin + k);
       const float dx = inWholeParts(half * vx[k]), dy = inWholeParts(half * vy[k]);
@@ -180,14 +181,15 @@ class OpenPaths {
             sampleAt<PeriodicY>(sizeY, row, 0.5f, dy + (shiftY - 0.5f)));
       place(inV, k, stride, sampleAt<PeriodicX>(sizeX, column, 0.5f, dx + (shiftX - 0.5f)),
             sampleAt<PeriodicY>(sizeY, row, 0.0f, dy + shiftY));
-      const float byX = std::fabs(dx), byY = std::fabs(dy);
-      reachX = byX > reachX ? byX : reachX;
-      reachY = byY > reachY ? byY : reachY;
+      feet.left[k] = dx < 0 ? -dx : 0.0f, feet.right[k] = dx > 0 ? dx : 0.0f;
+      feet.down[k] = dy < 0 ? -dy : 0.0f, feet.up[k] = dy > 0 ? dy : 0.0f;
     }
     alignas(64) float ux[kTile], uy[kTile];
     bilinear(u_, inU, count, ux);
     bilinear(v_, inV, count, uy);
-#pragma omp simd reduction(max : reachX, reachY)
+    float left = 0, right = 0, down = 0, up = 0;
+    const auto larger = [](float a, float b) { return a > b ? a : b; };
+#pragma omp simd reduction(max : left, right, down, up)
     for (int k = 0; k < count; ++k) {
       const auto column = static_cast<float>(begin + k);
       const float dx = inWholeParts(whole * ux[k]), dy = inWholeParts(whole * uy[k]);
@@ -196,12 +198,13 @@ class OpenPaths {
       feet.at[k] = static_cast<int>(y.below) * stride + static_cast<int>(x.below);
       feet.shareX[k] = x.share;
       feet.shareY[k] = y.share;
-      const float byX = std::fabs(dx), byY = std::fabs(dy);
-      reachX = byX > reachX ? byX : reachX;
-      reachY = byY > reachY ? byY : reachY;
+      feet.left[k] = larger(-dx, feet.left[k]), feet.right[k] = larger(dx, feet.right[k]);
+      feet.down[k] = larger(-dy, feet.down[k]), feet.up[k] = larger(dy, feet.up[k]);
+      left = larger(feet.left[k], left), right = larger(feet.right[k], right);
+      down = larger(feet.down[k], down), up = larger(feet.up[k], up);
     }
-    feet.reachX = reachX;
-    feet.reachY = reachY;
+    feet.mostLeft = left, feet.mostRight = right;
+    feet.mostDown = down, feet.mostUp = up;
   }
 
   const Field &u_, &v_;
@@ -333,16 +336,24 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   const int columns = boundary.periodicX() ? nx : nx + 1, rows = boundary.periodicY() ? ny : ny + 1;
   if (anySolid && shutBlocks_.empty()) findShutBlocks(boundary);
-  // Whether a solid is where these paths have been. What is not a number counts as far.
-  auto nearSolid = [&](int begin, int count, int j, const Feet& feet) {
-    if (!anySolid) return false;
+  // Whether a solid is where paths from columns [i0, i1) of row j may have been. What is not a number counts
+  // as far.
+  auto nearSolid = [&](int i0, int i1, int j, float left, float right, float down, float up) {
     const auto cells = [](float reach) { return reach < 1e6f ? static_cast<int>(reach) + 2 : 1000000; };
-    int i0 = begin - cells(feet.reachX), i1 = begin + count + cells(feet.reachX);
-    int j0 = j - cells(feet.reachY), j1 = j + cells(feet.reachY);
+    i0 -= cells(left), i1 += cells(right);
+    int j0 = j - cells(down), j1 = j + cells(up);
     // On a periodic grid a path may come in on the other side: then all of the grid is within reach.
     if (boundary.periodicX() && (i0 < 0 || i1 > nx)) i0 = 0, i1 = nx;
     if (boundary.periodicY() && (j0 < 0 || j1 > ny)) j0 = 0, j1 = ny;
     return anyShut(i0, i1, j0, j1);
+  };
+  // Calls careful(i) for the faces [begin, begin + count) of row j that a solid may be in the way of.
+  auto besideSolids = [&](int begin, int count, int j, const Feet& f, auto&& careful) {
+    if (!anySolid || !nearSolid(begin, begin + count, j, f.mostLeft, f.mostRight, f.mostDown, f.mostUp))
+      return;
+    for (int k = 0; k < count; ++k)
+      if (nearSolid(begin + k, begin + k + 1, j, f.left[k], f.right[k], f.down[k], f.up[k]))
+        careful(begin + k);
   };
   const OpenPaths open(boundary, u, v, dt);
   const PathsBesideSolids careful(boundary, u, v, dt);
@@ -352,28 +363,22 @@ void SemiLagrangian::carry(const Boundary& boundary, const Field& u, const Field
       for (int x0 = 0; j < ny && x0 < columns; x0 += kTile) {
         const int count = std::min(kTile, columns - x0);
         open.feetOfU(x0, count, j, feet);
-        if (!nearSolid(x0, count, j, feet)) {
-          takeAtFeet(u, feet, boundary.openX.row(j) + x0, count, outU.row(j) + x0);
-          continue;
-        }
-        for (int i = x0; i < x0 + count; ++i)
-          if (boundary.openX(i, j) > 0) {
-            const auto foot = careful.footOfU(i, j);
-            outU(i, j) = takeAt(u, foot.x, foot.y - 0.5);
-          }
+        takeAtFeet(u, feet, boundary.openX.row(j) + x0, count, outU.row(j) + x0);
+        besideSolids(x0, count, j, feet, [&](int i) {
+          if (!(boundary.openX(i, j) > 0)) return;
+          const auto foot = careful.footOfU(i, j);
+          outU(i, j) = takeAt(u, foot.x, foot.y - 0.5);
+        });
       }
       for (int x0 = 0; x0 < nx; x0 += kTile) {
         const int count = std::min(kTile, nx - x0);
         open.feetOfV(x0, count, j, feet);
-        if (!nearSolid(x0, count, j, feet)) {
-          takeAtFeet(v, feet, boundary.openY.row(j) + x0, count, outV.row(j) + x0);
-          continue;
-        }
-        for (int i = x0; i < x0 + count; ++i)
-          if (boundary.openY(i, j) > 0) {
-            const auto foot = careful.footOfV(i, j);
-            outV(i, j) = takeAt(v, foot.x - 0.5, foot.y);
-          }
+        takeAtFeet(v, feet, boundary.openY.row(j) + x0, count, outV.row(j) + x0);
+        besideSolids(x0, count, j, feet, [&](int i) {
+          if (!(boundary.openY(i, j) > 0)) return;
+          const auto foot = careful.footOfV(i, j);
+          outV(i, j) = takeAt(v, foot.x - 0.5, foot.y);
+        });
       }
     }
     after(begin, end);
