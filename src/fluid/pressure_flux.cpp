@@ -11,7 +11,10 @@
 namespace smokebox {
 
 using multigrid::kEmpty;
+using multigrid::kLeftSide;
 using multigrid::kRegular;
+using multigrid::kRightSide;
+using multigrid::Level;
 
 namespace {
 
@@ -59,14 +62,18 @@ void PressureFlux::closeFaces(const Boundary& boundary, const multigrid::Level& 
     float *velocity = u.row(j), *below = v.row(j);
     const std::uint8_t* kind = links.chunkRow(j);
     for (int c = 0; c < links.chunks; ++c) {
-      if (kind[c] & kRegular) continue;
+      if (kind[c] & (kRegular | kRightSide)) continue;
+      if (kind[c] & kLeftSide) {
+        if (!(links.sideCells[2 * j].link > 0)) velocity[0] = wall[0];
+        continue;
+      }
       const int first = c * kLanes;
       close(velocity + first, open + first, wall + first, nx - first);
       close(below + first, openBelow + first, wallBelow + first, nx - first);
     }
     if (links.periodicX)
       velocity[nx] = velocity[0];
-    else if (!(open[nx] > 0))
+    else if (!(links.sideCells[2 * j + 1].link > 0))
       velocity[nx] = wall[nx];
   });
   if (links.periodicY) {
@@ -105,20 +112,35 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
   const float* wallV = boundary.wallV.row(j);
   const float* wallVAbove = boundary.wallV.row(links.periodicY && j == ny - 1 ? 0 : j + 1);
   const std::uint8_t* kind = links.chunkRow(j);
+  const Level::SideCell* side = links.sideCells.data() + 2 * j;
   float* out = links.row(b, j);
   const Lanes zero = {};
-  const LaneMask all = zero == zero;
   Lanes flux = {}, speed = {};
-  for (int c = 0; c < links.chunks; ++c) {
+  const auto found = [&](int first, const Lanes& net, const Lanes& left, const Lanes& below)
+      __attribute__((always_inline)) {
+    store(out + first, net);
+    flux = multigrid::larger(magnitude(net), flux);
+    speed = multigrid::larger(magnitude(left), speed);
+    speed = multigrid::larger(magnitude(below), speed);
+  };
+  for (int c = 0, chunks = links.chunks; c < chunks; ++c) {
     const int first = c * kLanes;
     if (kind[c] & kEmpty) continue;
-    const bool regular = kind[c] & kRegular;
     Lanes left = load(ur + first), below = load(vr + first);
     // Neighbouring velocities are close: their differences are as good as exact in float32. Closed faces hold
     // the wall's.
     Lanes net = (left - load(ur + first + 1)) + (below - load(va + first));
-    const LaneMask whole = regular ? all : wholeFaces(ax + first, ay + first, ayAbove + first);
-    if (!regular && !multigrid::allLanes(whole)) {
+    if (kind[c] & kRegular) {
+      found(first, net, left, below);
+      continue;
+    }
+    if (kind[c] & (kLeftSide | kRightSide) && side[kind[c] & kLeftSide ? 0 : 1].link == 0) {
+      if (kind[c] & kLeftSide) left = select(laneNumbers() == 0, zero, left);
+      found(first, net, left, below);
+      continue;
+    }
+    const LaneMask whole = wholeFaces(ax + first, ay + first, ayAbove + first);
+    if (!multigrid::allLanes(whole)) {
       // The row may end within these 16 cells: what lies beyond has no links, and counts as 0.
       alignas(64) float sums[kLanes], right[kLanes];
       for (int k = 0; k < kLanes; ++k) right[k] = wallU[first + k + 1];
@@ -134,18 +156,11 @@ void PressureFlux::measureRow(const Boundary& boundary, const multigrid::Level& 
       const Lanes exact = load(sums);
       net = nx % kLanes == 0 ? exact : select(whole, net, exact);
     }
-    if (!regular) {
-      net = select(load(id + first) > zero, net, zero);
-      left = select(load(ax + first) > zero, left, zero);
-      below = select(load(ay + first) > zero, below, zero);
-    }
-    store(out + first, net);
-    flux = multigrid::larger(magnitude(net), flux);
-    speed = multigrid::larger(magnitude(left), speed);
-    speed = multigrid::larger(magnitude(below), speed);
+    found(first, select(load(id + first) > zero, net, zero), select(load(ax + first) > zero, left, zero),
+          select(load(ay + first) > zero, below, zero));
   }
   double sideSpeed = 0;
-  if (ax[nx] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), sideSpeed);
+  if (side[1].link > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(ur[nx])), sideSpeed);
   if (j == ny - 1)
     for (int i = 0; i < nx; ++i)
       if (ayAbove[i] > 0) sideSpeed = largerOf(std::fabs(static_cast<double>(va[i])), sideSpeed);
@@ -165,22 +180,26 @@ void PressureFlux::subtractFromRow(const multigrid::Level& links, const multigri
   const float* here = links.row(phi, j);
   float *ur = u.row(j), *vr = v.row(j);
   const std::uint8_t* kind = links.chunkRow(j);
-  for (int c = 0; c < links.chunks; ++c) {
+  const Level::SideCell* side = links.sideCells.data() + 2 * j;
+  const std::ptrdiff_t stride = links.stride;
+  for (int c = 0, chunks = links.chunks; c < chunks; ++c) {
     const int first = c * kLanes;
     if (kind[c] & kEmpty) continue;
-    if (kind[c] & kRegular) {
-      const Lanes value = load(here + first);
-      store(ur + first, load(ur + first) - (value - load(here + first - 1)));
-      store(vr + first, load(vr + first) - (value - load(here + first - links.stride)));
+    if (kind[c] & (kRegular | kLeftSide | kRightSide)) {
+      const Lanes value = load(here + first), old = load(ur + first);
+      const Lanes along = old - (value - load(here + first - 1));
+      const bool closed = kind[c] & kLeftSide && !(side[0].link > 0);
+      store(ur + first, closed ? select(laneNumbers() == 0, old, along) : along);
+      store(vr + first, load(vr + first) - (value - load(here + first - stride)));
       continue;
     }
     const LaneMask inside = laneNumbers() < nx - first;
     subtract(ur + first, open + first, here + first, 1, inside);
-    subtract(vr + first, openBelow + first, here + first, links.stride, inside);
+    subtract(vr + first, openBelow + first, here + first, stride, inside);
   }
   if (links.periodicX)
     ur[nx] = ur[0];
-  else if (open[nx] > 0)
+  else if (side[1].link > 0)
     ur[nx] -= here[nx] - here[nx - 1];
   if (links.periodicY) {
     if (j == 0) std::copy_n(vr, nx, v.row(ny));
