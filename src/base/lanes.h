@@ -47,6 +47,11 @@ SMOKEBOX_INLINE Lanes oddLanes(const Lanes& a, const Lanes& b) {
   return __builtin_shuffle(a, b, 2 * laneNumbers() + 1);
 }
 
+/// The last lane of a, and all but the last of b.
+SMOKEBOX_INLINE Lanes lastAndRest(const Lanes& a, const Lanes& b) {
+  return __builtin_shuffle(a, b, laneNumbers() + (kLanes - 1));
+}
+
 /// Lane k: p[k / 2]; or p[(k + 1) / 2].
 SMOKEBOX_INLINE Lanes loadTwice(const float* p) { return __builtin_shuffle(load(p), laneNumbers() >> 1); }
 SMOKEBOX_INLINE Lanes loadTwiceFromMiddle(const float* p) {

@@ -142,6 +142,16 @@ SMOKEBOX_INLINE Pack<float, n> oddLanes(const Pack<float, n>& a, const Pack<floa
     return Pack<float, n>(__builtin_shufflevector(a.v, b.v, 1, 3, 5, 7));
 }
 
+template <int n>
+SMOKEBOX_INLINE Pack<float, n> lastAndRest(const Pack<float, n>& a, const Pack<float, n>& b) {
+  if constexpr (n > kVectorLanes)
+    return {lastAndRest(a.high, b.low), lastAndRest(b.low, b.high)};
+  else if constexpr (n == 8)
+    return Pack<float, n>(__builtin_shufflevector(a.v, b.v, 7, 8, 9, 10, 11, 12, 13, 14));
+  else
+    return Pack<float, n>(__builtin_shufflevector(a.v, b.v, 3, 4, 5, 6));
+}
+
 template <int n = 16>
 SMOKEBOX_INLINE Pack<float, n> loadTwice(const float* p) {
   if constexpr (n > kVectorLanes) {

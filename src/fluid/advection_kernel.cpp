@@ -18,51 +18,92 @@ constexpr int kLead = 16;  // column 0 of a tile within a line
 // the difference.
 constexpr float kFluxScale = 1.0f / (16.0f * 256.0f * 24.0f);
 
-/// Unnormalised flux between p[0] and p[step] at a transport velocity U (16 times its size).
-inline float flux(float U, const float* p, std::ptrdiff_t step) {
-  const float a = p[0], b = p[step], m1 = p[-step], p1 = p[2 * step], m2 = p[-2 * step], p2 = p[3 * step];
-  const float even = (150 * (a + b) - 25 * (m1 + p1)) + 3 * (m2 + p2);
-  const float odd = 3 * (((p2 - m2) - 5 * (p1 - m1)) + 10 * (b - a));
-  return U * even - std::fabs(U) * odd;
-}
-
-/// 16 times the 4-point interpolation between p[0] and p[step].
-inline float transport(const float* p, std::ptrdiff_t step) {
-  return 9 * (p[0] + p[step]) - (p[-step] + p[2 * step]);
-}
-
-/// line[i] = flux between q[i] and q[i + step], carried by `carrier` interpolated along carrierStep.
-inline void fluxLine(const float* carrier, std::ptrdiff_t carrierStep, const float* q, std::ptrdiff_t step,
-                     int begin, int end, float* __restrict line) {
-#pragma omp simd
-  for (int i = begin; i < end; ++i) line[i] = flux(transport(carrier + i, carrierStep), q + i, step);
-}
-
-/// line[i] = accelerationScale a - phiScale (phi - back), back being phi of the cell behind.
-inline void impulseLine(const AdvectionStage& s, const float* phi, const float* back,
-                        const float* acceleration, int count, float* __restrict line) {
-  const float ps = s.phiScale, as = s.accelerationScale;
-  if (acceleration) {
-#pragma omp simd
-    for (int i = 0; i < count; ++i) line[i] = as * acceleration[i] - ps * (phi[i] - back[i]);
-  } else {
-#pragma omp simd
-    for (int i = 0; i < count; ++i) line[i] = -(ps * (phi[i] - back[i]));
+/// Goes along a row, chunk by chunk: what lies beside the values of one, by so many columns.
+class Beside {
+ public:
+#ifdef __AVX512F__
+  // From aligned loads: those across two lines of the cache take twice as long.
+  SMOKEBOX_INLINE explicit Beside(const float* p) : here_(load(p - kLanes)), ahead_(load(p)) {}
+  SMOKEBOX_INLINE void at(const float* p) {
+    before_ = here_;
+    here_ = ahead_;
+    ahead_ = load(p + kLanes);
   }
+  template <int columns>
+  SMOKEBOX_INLINE Lanes by() const {
+    const LaneMask lanes = laneNumbers() + (columns + kLanes) % kLanes;
+    if constexpr (columns == 0) return here_;
+    return columns < 0 ? __builtin_shuffle(before_, here_, lanes) : __builtin_shuffle(here_, ahead_, lanes);
+  }
+
+ private:
+  Lanes before_ = {}, here_, ahead_;
+#else
+  SMOKEBOX_INLINE explicit Beside(const float* p) : here_(p) {}
+  SMOKEBOX_INLINE void at(const float* p) { here_ = p; }
+  template <int columns>
+  SMOKEBOX_INLINE Lanes by() const {
+    return load(here_ + columns);
+  }
+
+ private:
+  const float* here_;
+#endif
+};
+
+/// Six values in a row, the flux point being in the middle.
+struct Six {
+  Lanes m2, m1, a, b, p1, p2;
+  static SMOKEBOX_INLINE Six along(const Beside& p) {  // between the two before the one here
+    return {p.by<-4>(), p.by<-3>(), p.by<-2>(), p.by<-1>(), p.by<0>(), p.by<1>()};
+  }
+  static SMOKEBOX_INLINE Six across(const float* p, std::ptrdiff_t step) {  // between p[0] and p[step]
+    return {load(p - 2 * step), load(p - step),     load(p),
+            load(p + step),     load(p + 2 * step), load(p + 3 * step)};
+  }
+};
+
+/// 16 times the 4-point interpolation between a and b.
+SMOKEBOX_INLINE Lanes transport(const Lanes& m1, const Lanes& a, const Lanes& b, const Lanes& p1) {
+  return 9.0f * (a + b) - (m1 + p1);
 }
 
-/// out = base + impulse - scale * (difference along x + difference along y); x[-1], x[0], x[1], x[2] and y0
-/// .. y3 are the fluxes around the face, in order.
-inline void finishLine(const float* base, const float* impulse, const float* x, const float* y0,
-                       const float* y1, const float* y2, const float* y3, float scale, int count,
-                       float* out) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const float dx = 27 * (x[i + 1] - x[i]) - (x[i + 2] - x[i - 1]);
-    const float dy = 27 * (y2[i] - y1[i]) - (y3[i] - y0[i]);
-    out[i] = base[i] + (impulse[i] - scale * (dx + dy));
-  }
+/// Unnormalised flux at a transport velocity U (16 times its size).
+SMOKEBOX_INLINE Lanes flux(const Lanes& U, const Six& q) {
+  const Lanes even = (150.0f * (q.a + q.b) - 25.0f * (q.m1 + q.p1)) + 3.0f * (q.m2 + q.p2);
+  const Lanes odd = 3.0f * (((q.p2 - q.m2) - 5.0f * (q.p1 - q.m1)) + 10.0f * (q.b - q.a));
+  return U * even - magnitude(U) * odd;
 }
+
+/// A row of a stage, from where its fluxes are known: x[-1], x[0], x[1], x[2] and y[0] .. y[3] are those
+/// around the face, in order. `back`: phi of the cell behind; `first`: of the one behind the first face.
+struct Finish {
+  const float *base, *phi, *back;
+  float first;
+  const float* acceleration;  // may be null
+  float phiScale, accelerationScale, scale;
+
+  SMOKEBOX_INLINE Lanes at(int i, const Lanes& behind, const Beside& x, const float* const* y) const {
+    const Lanes dx = 27.0f * (x.by<2>() - x.by<1>()) - (x.by<3>() - x.by<0>());
+    const Lanes dy = 27.0f * (load(y[2] + i) - load(y[1] + i)) - (load(y[3] + i) - load(y[0] + i));
+    const Lanes push = phiScale * (load(phi + i) - behind);
+    const Lanes impulse = acceleration ? accelerationScale * load(acceleration + i) - push : Lanes{} - push;
+    return load(base + i) + (impulse - scale * (dx + dy));
+  }
+  inline void row(const float* x, const float* const* y, int count, float* __restrict out) const {
+    const LaneMask place = laneNumbers();
+    int i = 0;
+    Beside beside(x - 1);
+    const auto next = [&](const Lanes& behind) __attribute__((always_inline)) {
+      beside.at(x + i - 1);
+      const Lanes value = at(i, behind, beside, y);
+      store(out + i, i + kLanes <= count ? value : select(place < count - i, value, load(out + i)));
+      i += kLanes;
+    };
+    next(select(place == 0, Lanes{} + first, load(back)));
+    while (i < count) next(load(back + i));
+  }
+};
 
 /// Asks for the columns from x0 on of a row that comes next, of fields larger than a cache.
 inline void expectRow(const Field* field, int j, int x0, int count) {
@@ -73,7 +114,7 @@ inline void expectRow(const Field* field, int j, int x0, int count) {
 }
 
 struct Lines {
-  alignas(64) float x[kLine], impulse[kLine], y[4][kLine];
+  alignas(64) float x[kLine], y[4][kLine];
 };
 
 }  // namespace
@@ -87,27 +128,45 @@ void advanceRowsOfU(const AdvectionStage& s, int begin, int end) {
     const int count = std::min(kTile, nx - x0);
     float* y[4] = {lines.y[0] + kLead, lines.y[1] + kLead, lines.y[2] + kLead, lines.y[3] + kLead};
     // y-fluxes at the nodes of row r, between u(r - 1) and u(r).
-    auto nodeLine = [&](int r, float* line) {
-      fluxLine(s.v->row(r) + x0 - 1, 1, s.u->row(r - 1) + x0, stride, 0, count, line);
+    auto nodeFlux = [&](int i, const Beside& v, const float* u) __attribute__((always_inline)) {
+      return flux(transport(v.by<-2>(), v.by<-1>(), v.by<0>(), v.by<1>()), Six::across(u + i, stride));
     };
-    for (int k = 0; k < 3; ++k) nodeLine(begin - 1 + k, y[k]);
+    for (int k = 0; k < 3; ++k) {
+      const float *v = s.v->row(begin - 1 + k) + x0, *u = s.u->row(begin - 2 + k) + x0;
+      Beside carrier(v);
+      for (int i = 0; i < count; i += kLanes) {
+        carrier.at(v + i);
+        store(y[k] + i, nodeFlux(i, carrier, u));
+      }
+    }
     for (int j = begin; j < end; ++j) {
       expectRow(s.u, j + 5, x0, count);
       expectRow(s.v, j + 3, x0, count);
       for (const Field* field : {s.baseU, s.phi, s.accelerationU, static_cast<const Field*>(s.outU)})
         expectRow(field, j + 1, x0, count);
-      nodeLine(j + 2, y[3]);
       // x-fluxes at the centres i - 1 of faces i = -1 .. : x[i] is left of face i.
-      float* x = lines.x + kLead;
-      fluxLine(s.u->row(j) + x0 - 1, 1, s.u->row(j) + x0 - 1, 1, -1, count + 2, x);
-      const float* phi = s.phi->row(j) + x0;
-      impulseLine(s, phi, phi - 1, s.accelerationU ? s.accelerationU->row(j) + x0 : nullptr, count,
-                  lines.impulse);
-      if (x0 == 0 && s.periodicX)
-        lines.impulse[0] = (s.accelerationU ? s.accelerationScale * (*s.accelerationU)(0, j) : 0.0f) -
-                           s.phiScale * (phi[0] - phi[nx - 1]);
-      finishLine(s.baseU->row(j) + x0, lines.impulse, x, y[0], y[1], y[2], y[3], scale, count,
-                 s.outU->row(j) + x0);
+      float* x = lines.x + kLead + 1;
+      const float *u = s.u->row(j) + x0, *phi = s.phi->row(j) + x0;
+      const float *v = s.v->row(j + 2) + x0, *above = s.u->row(j + 1) + x0;
+      Beside carrier(v), along(u);
+      for (int i = 0; i < count + kLanes; i += kLanes) {
+        along.at(u + i);
+        const Six q = Six::along(along);
+        store(x + i - 1, flux(transport(q.m1, q.a, q.b, q.p1), q));
+        if (i >= count) break;
+        carrier.at(v + i);
+        store(y[3] + i, nodeFlux(i, carrier, above));
+      }
+      const float first = x0 == 0 && s.periodicX ? phi[nx - 1] : phi[-1];
+      const Finish finish{s.baseU->row(j) + x0,
+                          phi,
+                          phi - 1,
+                          first,
+                          s.accelerationU ? s.accelerationU->row(j) + x0 : nullptr,
+                          s.phiScale,
+                          s.accelerationScale,
+                          scale};
+      finish.row(x, y, count, s.outU->row(j) + x0);
       std::rotate(y, y + 1, y + 4);
     }
   }
@@ -122,26 +181,46 @@ void advanceRowsOfV(const AdvectionStage& s, int begin, int end) {
     const int count = std::min(kTile, nx - x0);
     float* y[4] = {lines.y[0] + kLead, lines.y[1] + kLead, lines.y[2] + kLead, lines.y[3] + kLead};
     // y-fluxes at the centres of row r, between v(r) and v(r + 1).
-    auto centreLine = [&](int r, float* line) {
-      const float* v = s.v->row(r) + x0;
-      fluxLine(v, stride, v, stride, 0, count, line);
+    auto centreFlux = [&](int i, const float* v) __attribute__((always_inline)) {
+      const Six q = Six::across(v + i, stride);
+      return flux(transport(q.m1, q.a, q.b, q.p1), q);
     };
-    for (int k = 0; k < 3; ++k) centreLine(begin - 2 + k, y[k]);
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < count; i += kLanes) store(y[k] + i, centreFlux(i, s.v->row(begin - 2 + k) + x0));
     for (int j = begin; j < end; ++j) {
       expectRow(s.v, j + 5, x0, count);
       expectRow(s.u, j + 2, x0, count);
       for (const Field* field : {s.baseV, s.phi, s.accelerationV, static_cast<const Field*>(s.outV)})
         expectRow(field, j + 1, x0, count);
-      centreLine(j + 1, y[3]);
       // x-fluxes at the nodes i, left of face i, between v(i - 1) and v(i).
-      float* x = lines.x + kLead;
-      fluxLine(s.u->row(j - 1) + x0, stride, s.v->row(j) + x0 - 1, 1, -1, count + 2, x);
+      float* x = lines.x + kLead + 1;
+      const float *v = s.v->row(j) + x0, *u = s.u->row(j - 1) + x0;
+      // The transport velocity there: at the chunk, and, of the chunk before, at its last node.
+      auto carrier = [&](int i) __attribute__((always_inline)) {
+        const float* c = u + i;
+        return transport(load(c - stride), load(c), load(c + stride), load(c + 2 * stride));
+      };
+      Beside along(v);
+      Lanes before = carrier(-kLanes);
+      for (int i = 0; i < count + kLanes; i += kLanes) {
+        along.at(v + i);
+        const Lanes here = carrier(i);
+        store(x + i - 1, flux(lastAndRest(before, here), Six::along(along)));
+        before = here;
+        if (i >= count) break;
+        store(y[3] + i, centreFlux(i, v + stride));
+      }
       const float* phi = s.phi->row(j) + x0;
       const float* below = s.phi->row(j == 0 && s.periodicY ? ny - 1 : j - 1) + x0;
-      impulseLine(s, phi, below, s.accelerationV ? s.accelerationV->row(j) + x0 : nullptr, count,
-                  lines.impulse);
-      finishLine(s.baseV->row(j) + x0, lines.impulse, x, y[0], y[1], y[2], y[3], scale, count,
-                 s.outV->row(j) + x0);
+      const Finish finish{s.baseV->row(j) + x0,
+                          phi,
+                          below,
+                          below[0],
+                          s.accelerationV ? s.accelerationV->row(j) + x0 : nullptr,
+                          s.phiScale,
+                          s.accelerationScale,
+                          scale};
+      finish.row(x, y, count, s.outV->row(j) + x0);
       std::rotate(y, y + 1, y + 4);
     }
   }
