@@ -17,6 +17,7 @@ namespace {
 constexpr int kRowGrain = 32;
 constexpr double kLargestCourant = 1.4;
 constexpr int kMostSubSteps = 4;
+constexpr double kTooFast = 2 * kLargestCourant;  // in the middle of a sub-step: it would not be stable
 // Iterations of the rough projections. Between sub-steps a bare cycle does as well as an iteration or two;
 // inside them, or inside a single step, the error is five times as large with it, and without any they are
 // unstable. Across periodic sides, where neighbours of one colour are smoothed less, drifting vortices of 128
@@ -55,8 +56,9 @@ struct Advection::Impl {
     extension.apply(boundary, u, v);
   }
 
-  /// One Wicker-Skamarock step of dt, `phiShare` of the whole; u, v extended in, not yet out.
-  void rungeKutta(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
+  /// One Wicker-Skamarock step of dt, `phiShare` of the whole; u, v extended in, not yet out. False, and u, v
+  /// as they were, if solids that have moved make the fluid too fast for it: as they close a gap.
+  bool rungeKutta(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
                   const Field* accelerationV, double dt, double phiShare,
                   const RoughProjection& projectRoughly) {
     AdvectionStage s;
@@ -80,28 +82,47 @@ struct Advection::Impl {
     const bool more = phiShare == 1 && (s.periodicX || s.periodicY);
     // The increment is that of half this step.
     projectRoughly(u2, v2, more ? kCyclesInPeriodicStep : kCyclesInside, 2 / phiShare);
+    if (solidsMoved &&
+        largestSpeed(boundary, u2, v2, phi, nullptr, nullptr, dt) * dt > kTooFast * boundary.grid.h) {
+      extension.reveal(hidden, u, v);
+      return false;
+    }
     extendForStencils(boundary, u2, v2);
     run(u2, v2, u1, v1, 1);
     extension.reveal(hidden, u1, v1);
     u.swap(u1);
     v.swap(v1);
+    return true;
   }
 
-  /// u += dt acceleration - grad phi, on open faces of rows [first, last).
+  /// One step of dt, `phiShare` of the whole, of any size; closed faces and margins come out extended.
+  void leap(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
+            const Field* accelerationV, double dt, double phiShare) {
+    extension.apply(boundary, u, v, true);
+    const auto push = [&](int begin, int end) {
+      addImpulse(boundary, u1, v1, phi, accelerationU, accelerationV, dt, phiShare, begin, end);
+    };
+    semiLagrangian.carry(boundary, u, v, dt, extension.anySolid(), u1, v1, std::ref(push));
+    extension.apply(boundary, u1, v1);
+    u.swap(u1);
+    v.swap(v1);
+  }
+
+  /// u += dt acceleration - phiShare grad phi, on open faces of rows [first, last).
   void addImpulse(const Boundary& boundary, Field& u, Field& v, const Field& phi, const Field* accelerationU,
-                  const Field* accelerationV, double dt, int first, int last) const {
+                  const Field* accelerationV, double dt, double phiShare, int first, int last) const {
     const int nx = boundary.grid.nx, ny = boundary.grid.ny;
     const bool wrapX = boundary.periodicX(), wrapY = boundary.periodicY();
-    const auto seconds = static_cast<float>(dt);
+    const auto seconds = static_cast<float>(dt), share = static_cast<float>(phiShare);
     auto push = [&](float* q, const float* open, const float* acceleration, const float* ahead,
                     const float* behind, int begin, int end) {
       if (acceleration) {
 #pragma omp simd
         for (int i = begin; i < end; ++i)
-          q[i] += open[i] > 0 ? seconds * acceleration[i] - (ahead[i] - behind[i]) : 0.0f;
+          q[i] += open[i] > 0 ? seconds * acceleration[i] - share * (ahead[i] - behind[i]) : 0.0f;
       } else {
 #pragma omp simd
-        for (int i = begin; i < end; ++i) q[i] += open[i] > 0 ? behind[i] - ahead[i] : 0.0f;
+        for (int i = begin; i < end; ++i) q[i] += open[i] > 0 ? share * (behind[i] - ahead[i]) : 0.0f;
       }
     };
     for (int j = first; j < last; ++j) {
@@ -114,7 +135,7 @@ struct Advection::Impl {
       if (j == ny) continue;
       push(u.row(j), boundary.openX.row(j), rowU, at, at - 1, 1, nx);
       auto edge = [&](int i, float ahead, float behind) {
-        if (boundary.openX(i, j) > 0) u(i, j) += (rowU ? seconds * rowU[i] : 0.0f) - (ahead - behind);
+        if (boundary.openX(i, j) > 0) u(i, j) += (rowU ? seconds * rowU[i] : 0.0f) - share * (ahead - behind);
       };
       edge(0, at[0], wrapX ? at[nx - 1] : 0.0f);
       if (!wrapX) edge(nx, 0.0f, at[nx - 1]);
@@ -156,6 +177,7 @@ struct Advection::Impl {
   }
 
   ThreadPool& pool;
+  bool solidsMoved = false;  // since the last step
   VelocityExtension extension;
   VelocityExtension::Hidden hidden;
   NearFaces near;
@@ -173,6 +195,7 @@ void Advection::rebuild(const Boundary& boundary) {
   impl_->extension.rebuild(boundary);
   impl_->near.rebuild(boundary, impl_->extension, impl_->pool);
   impl_->semiLagrangian.rebuild();
+  impl_->solidsMoved = true;
 }
 
 Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& v, const Field& phi,
@@ -188,20 +211,20 @@ Advection::Result Advection::advance(const Boundary& boundary, Field& u, Field& 
     const double share = 1.0 / result.subSteps;
     m.extension.apply(boundary, u, v);
     for (int k = 0; k < result.subSteps; ++k) {
-      m.rungeKutta(boundary, u, v, phi, accelerationU, accelerationV, share * dt, share, projectRoughly);
+      if (!m.rungeKutta(boundary, u, v, phi, accelerationU, accelerationV, share * dt, share,
+                        projectRoughly)) {
+        const double left = 1 - k * share;
+        m.leap(boundary, u, v, phi, accelerationU, accelerationV, left * dt, left);
+        result.subSteps = 0;
+        break;
+      }
       if (k + 1 < result.subSteps) projectRoughly(u, v, kCyclesBetween, result.subSteps);
       m.extension.apply(boundary, u, v);
     }
-    return result;
+  } else {
+    m.leap(boundary, u, v, phi, accelerationU, accelerationV, dt, 1);
   }
-  m.extension.apply(boundary, u, v, true);
-  const auto push = [&](int begin, int end) {
-    m.addImpulse(boundary, m.u1, m.v1, phi, accelerationU, accelerationV, dt, begin, end);
-  };
-  m.semiLagrangian.carry(boundary, u, v, dt, m.extension.anySolid(), m.u1, m.v1, std::ref(push));
-  m.extension.apply(boundary, m.u1, m.v1);
-  u.swap(m.u1);
-  v.swap(m.v1);
+  m.solidsMoved = false;
   return result;
 }
 

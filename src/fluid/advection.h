@@ -1,8 +1,8 @@
 // Carries the velocity along itself: conservative 5th-order upwind fluxes on the staggered grid with
 // 4th-order transport velocity and deconvolved flux, Wicker-Skamarock RK3 (2002), the last pressure inside
 // the stages; lower order beside walls and cut faces. Stable to max(|u|+|v|) dt/h = 1.5: above 1.4 it takes
-// sub-steps (up to four); beyond that a Catmull-Rom semi-Lagrangian step with lagged pressure, stable at any
-// size.
+// sub-steps (up to four); beyond that, and where solids that close a gap make it so within a step, a
+// Catmull-Rom semi-Lagrangian step with lagged pressure, stable at any size.
 //
 // What comes in through an open side was at rest far away: its normal speed loses the head u^2/2 on the way
 // in, its tangential speed is that of the face it meets.
@@ -29,7 +29,7 @@ class Advection {
   /// What one call of advance() did.
   struct Result {
     double courant = 0;  // max(|u|+|v|) dt/h at the start of the step
-    int subSteps = 0;    // Runge-Kutta steps; 0: one semi-Lagrangian step
+    int subSteps = 0;    // Runge-Kutta steps; 0: a semi-Lagrangian step, or the last one was
   };
 
   Advection(const Boundary& boundary, ThreadPool& pool);
