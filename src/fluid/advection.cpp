@@ -17,7 +17,7 @@ namespace {
 constexpr int kRowGrain = 32;
 constexpr double kLargestCourant = 1.4;
 constexpr int kMostSubSteps = 4;
-constexpr double kTooFast = 2 * kLargestCourant;  // in the middle of a sub-step: it would not be stable
+constexpr double kTooFast = 8;  // in the middle of a sub-step: the rest would grow beyond all bounds
 // Iterations of the rough projections. Between sub-steps a bare cycle does as well as an iteration or two;
 // inside them, or inside a single step, the error is five times as large with it, and without any they are
 // unstable. Across periodic sides, where neighbours of one colour are smoothed less, drifting vortices of 128
