@@ -5,6 +5,7 @@
 // (lanes_narrow.h): vectors wider than the machine's live in memory, and GCC 12 takes them apart number by
 // number where they are compared, chosen from or shuffled.
 #pragma once
+#include <cstdint>
 #include <cstring>
 
 #define SMOKEBOX_INLINE inline __attribute__((always_inline))
@@ -68,6 +69,18 @@ SMOKEBOX_INLINE void store(float* p, const Lanes& v) { v.to(p); }
 SMOKEBOX_INLINE LaneMask laneNumbers() { return LaneMask::numbers(0); }
 
 #endif
+
+/// The lanes whose bits are set.
+SMOKEBOX_INLINE LaneMask lanesOfBits(std::uint16_t bits) {
+#ifdef __AVX512F__
+  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+#else
+  static constexpr int kBits[] = {1,   2,   4,    8,    16,   32,   64,    128,
+                                  256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+  const LaneMask place = LaneMask::at(kBits);
+#endif
+  return (place & static_cast<int>(bits)) != 0;
+}
 
 /// Lane k of v becomes `value`.
 template <class V, class T>

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/lanes.h"
+
 namespace smokebox {
 
 namespace {
@@ -15,13 +17,6 @@ constexpr std::uint8_t kRegular = 3;   // fully open, or the image of such a fac
 
 // Small cut cells are given at least this share of a cell's area, so that they do not limit the time step.
 constexpr float kSmallestVolume = 0.5f;
-
-// Value between a and b of (m2 m1 a | b p1 p2) by each order, first to fifth: the even weights on a + b, m1 +
-// p1, m2 + p2 less the sign of the flow times the odd weights on b - a, p1 - m1, p2 - m2.
-constexpr float kEven[3][3] = {
-    {1.0f / 2, 0, 0}, {9.0f / 16, -1.0f / 16, 0}, {150.0f / 256, -25.0f / 256, 3.0f / 256}};
-constexpr float kOdd[3][3] = {
-    {1.0f / 2, 0, 0}, {3.0f / 16, -1.0f / 16, 0}, {30.0f / 256, -15.0f / 256, 3.0f / 256}};
 
 constexpr int kReach = 4;      // of the high-order stencil along the direction of a flux
 constexpr int kMapMargin = 8;  // columns of the margin that are filled
@@ -38,9 +33,11 @@ void continueUse(WallKind kind, bool normal, std::uint8_t* f, std::ptrdiff_t ste
   }
 }
 
+}  // namespace
+
 /// U (value at the flux point - q) without a branch. p: the lower face of the flux point; own: which of p[0],
 /// p[step] is the face that has the value q.
-inline float carried(int order, const float* p, std::ptrdiff_t step, int own, float U) {
+inline float NearFaces::carried(int order, const float* p, std::ptrdiff_t step, int own, float U) {
   const float *e = kEven[order], *o = kOdd[order];
   const float a = p[0], b = p[step], m1 = p[-step], p1 = p[2 * step], m2 = p[-2 * step], p2 = p[3 * step];
   const float even = (e[0] * (a + b) + e[1] * (m1 + p1)) + e[2] * (m2 + p2);
@@ -48,14 +45,13 @@ inline float carried(int order, const float* p, std::ptrdiff_t step, int own, fl
   return U * (even - p[own * step]) - std::fabs(U) * odd;
 }
 
-}  // namespace
-
 NearFaces::NearFaces(const Boundary& boundary) {
   const int nx = boundary.grid.nx, ny = boundary.grid.ny;
   u_.use = FaceMap(nx, ny);
   v_.use = FaceMap(nx, ny);
   u_.rowBegin.assign(ny + 2, 0);
   v_.rowBegin.assign(ny + 2, 0);
+  u_.groupBegin = v_.groupBegin = u_.rowBegin;
   // Padded, so that it can be looked through eight at a time.
   u_.irregular.assign(nx + 1 + 8, 0);
   v_.irregular.assign(nx + 1 + 8, 0);
@@ -133,8 +129,10 @@ void NearFaces::findFaces(const Boundary& boundary, const VelocityExtension& ext
   };
 
   c.faces.clear();
+  c.groups.clear();
   for (int j = 0; j <= ny + 1; ++j) {
     c.rowBegin[j] = static_cast<int>(c.faces.size());
+    c.groupBegin[j] = static_cast<int>(c.groups.size());
     if (j >= rows) continue;
     std::uint8_t* irregular = c.irregular.data();
     std::memset(irregular, 0, static_cast<std::size_t>(columns));
@@ -187,8 +185,25 @@ void NearFaces::findFaces(const Boundary& boundary, const VelocityExtension& ext
             between(i, j - 1, 0, 1, j == 0, Side::bottom), between(i, j, 0, 1, j == rows - 1, Side::top)};
       }
       face.atSide = *std::max_element(face.order.begin(), face.order.end()) > fifth;
-      c.faces.push_back(face);
+      // What is behind the first face of a row or column is not beside it in memory.
+      const bool inside = alongX ? i > 0 && i < nx : j > 0 && j < ny;
+      if (face.cut || face.atSide || !inside)
+        c.faces.push_back(face);
+      else
+        addToGroup(c, j, face);
     }
+  }
+}
+
+void NearFaces::addToGroup(Component& c, int j, const Face& face) {
+  if (c.groupBegin[j] == static_cast<int>(c.groups.size()) || face.i >= c.groups.back().i + kLanes)
+    c.groups.push_back({face.i, 0, {}, {}});
+  Group& group = c.groups.back();
+  const auto bit = static_cast<std::uint16_t>(1u << (face.i - group.i));
+  group.faces |= bit;
+  for (int k = 0; k < 4; ++k) {
+    if (face.order[k] == third) group.third[k] |= bit;
+    if (face.order[k] == fifth) group.fifth[k] |= bit;
   }
 }
 
@@ -247,6 +262,7 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
     return f.atSide ? sum(carriedAtSide) : sum(carried);
   };
 
+  advanceGroups(s, begin, std::min(end, ny));
   for (int j = begin; j < std::min(end, ny); ++j)
     for (int k = u_.rowBegin[j]; k < u_.rowBegin[j + 1]; ++k) {
       const Face& f = u_.faces[k];
@@ -291,7 +307,8 @@ void NearFaces::advanceRows(const Boundary& boundary, const AdvectionStage& s, i
 std::size_t NearFaces::bytes() const {
   std::size_t total = u_.irregular.capacity() + v_.irregular.capacity();
   for (const Component* c : {&u_, &v_})
-    total += c->faces.capacity() * sizeof(Face) + c->rowBegin.capacity() * sizeof(int) + c->use.bytes();
+    total += c->faces.capacity() * sizeof(Face) + c->groups.capacity() * sizeof(Group) +
+             (c->rowBegin.capacity() + c->groupBegin.capacity()) * sizeof(int) + c->use.bytes();
   return total;
 }
 

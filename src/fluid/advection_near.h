@@ -37,7 +37,6 @@ class NearFaces {
   /// Overwrites what the whole-row kernel wrote on near faces of rows [begin, end); row ny is v's last.
   void advanceRows(const Boundary& boundary, const AdvectionStage& stage, int begin, int end) const;
 
-  std::size_t count() const { return u_.faces.size() + v_.faces.size(); }
   std::size_t bytes() const;
 
  private:
@@ -49,9 +48,19 @@ class NearFaces {
     bool atSide = false;           // some order is of the kind that only the domain's sides have
     std::array<Order, 4> order{};  // at the flux points before and after it along x, then along y
   };
+  // Faces of a row within 16 columns that are done together: not cut, nor at a side of the domain. A bit for
+  // each.
+  struct Group {
+    int i = 0;                // of the first
+    std::uint16_t faces = 0;  // which ones
+    std::array<std::uint16_t, 4> third{},
+        fifth{};  // of which order they are at these flux points, else first
+  };
   struct Component {
-    std::vector<Face> faces;
+    std::vector<Face> faces;              // those that are done one by one
     std::vector<int> rowBegin;            // faces of row j: [rowBegin[j], rowBegin[j + 1])
+    std::vector<Group> groups;            // the others
+    std::vector<int> groupBegin;          // as rowBegin
     FaceMap use;                          // what a stencil may do with a face's value, see the .cpp
     std::vector<std::uint8_t> irregular;  // scratch of one row
   };
@@ -59,6 +68,18 @@ class NearFaces {
   void findUse(const Boundary& boundary, const VelocityExtension& extension, bool alongX, FaceMap& use) const;
   void findFaces(const Boundary& boundary, const VelocityExtension& extension, bool alongX);
   Order orderBetween(const FaceMap& use, int i, int j, int di, int dj, bool atWall) const;
+
+  // Value between a and b of (m2 m1 a | b p1 p2) by each order, first to fifth: the even weights on a + b, m1
+  // + p1, m2 + p2 less the sign of the flow times the odd weights on b - a, p1 - m1, p2 - m2.
+  static constexpr float kEven[3][3] = {
+      {1.0f / 2, 0, 0}, {9.0f / 16, -1.0f / 16, 0}, {150.0f / 256, -25.0f / 256, 3.0f / 256}};
+  static constexpr float kOdd[3][3] = {
+      {1.0f / 2, 0, 0}, {3.0f / 16, -1.0f / 16, 0}, {30.0f / 256, -15.0f / 256, 3.0f / 256}};
+
+  static float carried(int order, const float* p, std::ptrdiff_t step, int own, float U);
+  static void addToGroup(Component& c, int j, const Face& face);
+  /// Those in groups, in rows [begin, end) within the domain.
+  void advanceGroups(const AdvectionStage& stage, int begin, int end) const;
 
   Component u_, v_;
 };

@@ -64,18 +64,6 @@ SMOKEBOX_INLINE LaneMask lanesOfColour(const Level& level, std::ptrdiff_t i, int
   return mask ^ (place >= level.swapsAt - static_cast<int>(i));
 }
 
-/// The lanes of a chunk whose bits are set.
-SMOKEBOX_INLINE LaneMask lanesOfBits(std::uint16_t bits) {
-#ifdef __AVX512F__
-  const LaneMask place = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-#else
-  static constexpr int kBits[] = {1,   2,   4,    8,    16,   32,   64,    128,
-                                  256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-  const LaneMask place = LaneMask::at(kBits);
-#endif
-  return (place & static_cast<int>(bits)) != 0;
-}
-
 /// What stands for a quarter in the chunk beside a side, and for the links to the left and to the right of
 /// its cells.
 SMOKEBOX_INLINE LaneMask laneAtSide(int kind) { return laneNumbers() == (kind & kLeftSide ? 0 : kLanes - 1); }
