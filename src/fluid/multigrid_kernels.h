@@ -31,11 +31,19 @@ SMOKEBOX_INLINE Lanes larger(const Lanes& a, const Lanes& b) {
 
 /// Of magnitudes.
 SMOKEBOX_INLINE float largestLane(const Lanes& v) {
+#ifdef __AVX512F__
+  const LaneMask place = laneNumbers();
+  Lanes m = larger(v, __builtin_shuffle(v, place ^ 8));
+  m = larger(m, __builtin_shuffle(m, place ^ 4));
+  m = larger(m, __builtin_shuffle(m, place ^ 2));
+  return larger(m, __builtin_shuffle(m, place ^ 1))[0];
+#else
   int bits[kLanes];
   std::memcpy(bits, &v, sizeof(bits));
   for (int half = kLanes / 2; half > 0; half /= 2)
     for (int k = 0; k < half; ++k) bits[k] = std::max(bits[k], bits[k + half]);
   return std::bit_cast<float>(bits[0]);
+#endif
 }
 
 /// Are all lanes true?
