@@ -28,8 +28,20 @@ void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>&
                                const ContactLayout& layout, Number relaxation) {
   colourEnds_ = layout.colourEnds();
   blocks_.resize(layout.blocks());
-  for (std::size_t k = 0; k < blocks_.size(); ++k)
-    fillBlock(blocks_[k], bodies, contacts, layout.inLane().data() + kLanes * k, relaxation);
+  const std::vector<int>& inLane = layout.inLane();
+  // Contacts of a block lie far apart: those of the next one are asked for ahead.
+  const auto askFor = [&](std::size_t block) {
+    for (int l = 0; l < kLanes; ++l) {
+      const int which = inLane[kLanes * block + l];
+      if (which < 0) continue;
+      const char* contact = reinterpret_cast<const char*>(&contacts[which]);
+      for (std::size_t at = 0; at < sizeof(Contact); at += 64) __builtin_prefetch(contact + at);
+    }
+  };
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    if (k + 1 < blocks_.size()) askFor(k + 1);
+    fillBlock(blocks_[k], bodies, contacts, inLane.data() + kLanes * k, relaxation);
+  }
 }
 
 template <class Number>
