@@ -27,6 +27,8 @@ template <class Number>
 void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>& contacts,
                                const ContactLayout& layout, Number relaxation) {
   colourEnds_ = layout.colourEnds();
+  relaxed_ = relaxation > 1;
+  back_ = true;
   blocks_.resize(layout.blocks());
   const std::vector<int>& inLane = layout.inLane();
   // Contacts of a block lie far apart: those of the next one are asked for ahead.
@@ -90,6 +92,18 @@ void BlockSweeps<Number>::fillBlock(Block& block, const Bodies& bodies, const st
     for (int l = 0; l < kLanes; ++l)  // a contact of one point beside one of two
       if (which[l] >= 0 && contacts[which[l]].count <= p) numbers(to.massN)[l] = numbers(to.massT)[l] = 0;
   }
+  if (block.count < 2) return;
+  // Of two points that are hardly two each does half.
+  const Point &p = block.points[0], &q = block.points[1];
+  constexpr Number kApart = static_cast<Number>(1e-4), kHalf = static_cast<Number>(0.5);
+  const Vector shared = block.inverseA + block.inverseB + block.inertiaA * p.armAN * q.armAN +
+                        block.inertiaB * p.armBN * q.armBN,
+               per = wide(1 / relaxation),
+               rest = wide<Number>(1) - shared * p.massN * per * shared * q.massN * per;
+  const auto areTwo = rest > wide(kApart);
+  block.firstBySecond = choose(areTwo, shared * p.massN * per, Vector{});
+  block.secondByFirst = choose(areTwo, shared * q.massN * per, Vector{});
+  block.both = choose(areTwo, wide<Number>(1) / rest, wide(kHalf));
 }
 
 template <class Number>
@@ -153,58 +167,96 @@ inline void BlockSweeps<Number>::begin(Block& block, Motion* moved, Number perSe
   if (smallestOf(deepest) < -static_cast<Number>(apart.slop)) separate(block, apart, moved, d);
 }
 
+// Two points at once: what each asks for by itself, less what the other one gives it. Where one lets go, the
+// other one is alone (the 2 x 2 linear complementarity problem by its cases, as in Catto's block solver). One
+// after the other they would tilt what stands on both, and towers of boxes sway.
 template <class Number>
 template <int kPoints>
-inline typename BlockSweeps<Number>::Pushes BlockSweeps<Number>::solve(Block& block, Relative<Vector> v) {
+inline void BlockSweeps<Number>::changeNormals(Block& block, const Relative<Vector>& v, Vector parts[kPoints],
+                                               Vector change[kPoints]) {
+  const Vector along = block.nx * v.x + block.ny * v.y;
+  Vector asked[kPoints];
+  for (int k = 0; k < kPoints; ++k) {
+    const Point& p = block.points[k];
+    parts[k] = along + (v.turnB * p.armBN - v.turnA * p.armAN) + p.allowed;
+    asked[k] = -p.massN * parts[k];
+  }
+  const Vector p0 = block.points[0].impulseN;
+  if constexpr (kPoints == 1) {
+    change[0] = larger(asked[0], -p0);
+  } else {
+    const Vector p1 = block.points[1].impulseN;
+    const Vector d0 = block.both * (asked[0] - block.firstBySecond * asked[1]),
+                 d1 = block.both * (asked[1] - block.secondByFirst * asked[0]);
+    const Vector x0 = p0 + d0, x1 = p1 + d1;
+    const Vector alone0 = larger(asked[0] + block.firstBySecond * p1, -p0),
+                 alone1 = larger(asked[1] + block.secondByFirst * p0, -p1);
+    const auto hold = smaller(x0, x1) < Vector{};
+    const auto first = x0 > x1;
+    change[0] = choose(hold, choose(first, alone0, -p0), d0);
+    change[1] = choose(hold, choose(first, -p1, alone1), d1);
+  }
+}
+
+template <class Number>
+template <int kPoints>
+inline typename BlockSweeps<Number>::Pushes BlockSweeps<Number>::solve(Block& block, Relative<Vector> v,
+                                                                       Order order) {
   const Vector nx = block.nx, ny = block.ny;
   const Vector inverse = block.inverseA + block.inverseB;
   const Vector givenX = inverse * nx, givenY = inverse * ny;
   Vector normal{}, tangential{}, turnA{}, turnB{}, largest{};
   const Vector far = wide<Number>(kFar);
   Vector least = far;
+  auto turn = [&](Vector armA, Vector armB, Vector by) {
+    const Vector byA = block.inertiaA * armA * by, byB = block.inertiaB * armB * by;
+    turnA -= byA;
+    turnB += byB;
+    v.turnA -= byA;
+    v.turnB += byB;
+  };
+  auto rub = [&] {
+    for (int k = 0; k < kPoints; ++k) {
+      Point& p = block.points[k];
+      const Vector vt = (nx * v.y - ny * v.x) + (v.turnB * p.armBT - v.turnA * p.armAT);
+      const Vector most = block.friction * p.impulseN;
+      const Vector slide = smaller(larger(-p.massT * vt, -most - p.impulseT), most - p.impulseT);
+      p.impulseT += slide;
+      tangential += slide;
+      v.x -= givenY * slide;
+      v.y += givenX * slide;
+      turn(p.armAT, p.armBT, slide);
+    }
+  };
+  if (order == Order::frictionFirst) rub();
+  Vector parts[kPoints], change[kPoints];
+  changeNormals<kPoints>(block, v, parts, change);
   for (int k = 0; k < kPoints; ++k) {
     Point& p = block.points[k];
-    auto turn = [&](Vector armA, Vector armB, Vector by) {
-      const Vector byA = block.inertiaA * armA * by, byB = block.inertiaB * armB * by;
-      turnA -= byA;
-      turnB += byB;
-      v.turnA -= byA;
-      v.turnB += byB;
-    };
-    const Vector parts = (nx * v.x + ny * v.y) + (v.turnB * p.armBN - v.turnA * p.armAN) + p.allowed;
-    // By differences, which are small: a sum would be rounded as what it bears.
-    const Vector change = larger(-p.massN * parts, -p.impulseN), total = p.impulseN + change;
+    const Vector total = p.impulseN + change[k];
     p.impulseN = total;
-    normal += change;
-    v.x += givenX * change;
-    v.y += givenY * change;
-    turn(p.armAN, p.armBN, change);
+    normal += change[k];
+    turn(p.armAN, p.armBN, change[k]);
     // The change of the velocity: all that was amiss, or less where the contact lets go.
-    const Vector amiss = choose(parts < Vector{}, -parts, parts);
-    largest = larger(largest, choose(change != Vector{}, amiss, Vector{}));
-    least = smaller(least, choose(p.massN > Vector{}, choose(total > Vector{}, Vector{}, parts), far));
-
-    const Vector vt = (nx * v.y - ny * v.x) + (v.turnB * p.armBT - v.turnA * p.armAT);
-    const Vector most = block.friction * total;
-    const Vector slide = smaller(larger(-p.massT * vt, -most - p.impulseT), most - p.impulseT);
-    p.impulseT += slide;
-    tangential += slide;
-    v.x -= givenY * slide;
-    v.y += givenX * slide;
-    turn(p.armAT, p.armBT, slide);
+    const Vector amiss = choose(parts[k] < Vector{}, -parts[k], parts[k]);
+    largest = larger(largest, choose(change[k] != Vector{}, amiss, Vector{}));
+    least = smaller(least, choose(p.massN > Vector{}, choose(total > Vector{}, Vector{}, parts[k]), far));
   }
+  v.x += givenX * normal;
+  v.y += givenY * normal;
+  if (order == Order::normalsFirst) rub();
   block.spare = smallestOf(least);
   block.change = largestOf(largest);
   return {nx * normal - ny * tangential, ny * normal + nx * tangential, turnA, turnB};
 }
 
 template <class Number>
-inline Number BlockSweeps<Number>::solveSome(Block* const* some, int count, Motion* velocity) {
+inline Number BlockSweeps<Number>::solveSome(Block* const* some, int count, Order order, Motion* velocity) {
   Relative<Vector> v[kSome];
   for (int k = 0; k < count; ++k) gather(velocity, some[k]->a, some[k]->b, v[k]);
   Number change = 0;
   for (int k = 0; k < count; ++k) {
-    v[k] = some[k]->count == 2 ? solve<2>(*some[k], v[k]) : solve<1>(*some[k], v[k]);
+    v[k] = some[k]->count == 2 ? solve<2>(*some[k], v[k], order) : solve<1>(*some[k], v[k], order);
     change = std::max(change, some[k]->change);
   }
   for (int k = 0; k < count; ++k) {
@@ -217,20 +269,31 @@ inline Number BlockSweeps<Number>::solveSome(Block* const* some, int count, Moti
 }
 
 template <class Number>
+template <class Todo>
+void BlockSweeps<Number>::eachColour(bool back, Todo&& todo) const {
+  const int count = static_cast<int>(colourEnds_.size());
+  for (int k = 0; k < count; ++k) {
+    const int colour = back ? count - 1 - k : k;
+    todo(colour > 0 ? colourEnds_[colour - 1] : 0, colourEnds_[colour]);
+  }
+}
+
+template <class Number>
 double BlockSweeps<Number>::sweepFirst(Bodies& bodies, double h, const MoveApart& apart) {
   const Number perSecond = static_cast<Number>(1 / h);
   Number result = 0;
   Block* some[kSome];
-  int k = 0;
-  for (const int end : colourEnds_)
+  back_ = !back_ && !relaxed_;
+  eachColour(back_, [&](int k, int end) {
     while (k < end) {
       int count = 0;
       for (; count < kSome && k < end; ++k) {
         some[count++] = &blocks_[k];
         begin(blocks_[k], bodies.moved.data(), perSecond, apart);
       }
-      result = std::max(result, solveSome(some, count, bodies.velocity.data()));
+      result = std::max(result, solveSome(some, count, Order::normalsFirst, bodies.velocity.data()));
     }
+  });
   change_ = result;
   return static_cast<double>(result);
 }
@@ -239,14 +302,14 @@ template <class Number>
 double BlockSweeps<Number>::sweep(Bodies& bodies) {
   Number result = 0;
   Block* some[kSome];
-  int k = 0;
-  for (const int end : colourEnds_)
+  eachColour(!back_, [&](int k, int end) {
     while (k < end) {
       int count = 0;
       for (; count < kSome && k < end; ++k)
         if (!(blocks_[k].spare > kSpare * change_)) some[count++] = &blocks_[k];
-      result = std::max(result, solveSome(some, count, bodies.velocity.data()));
+      result = std::max(result, solveSome(some, count, Order::frictionFirst, bodies.velocity.data()));
     }
+  });
   change_ = result;
   return static_cast<double>(result);
 }
@@ -273,7 +336,7 @@ double BlockSweeps<Number>::sweepRough(Bodies& bodies, double above) {
         some[count] = &block;
         which[count++] = rough_[next];
       }
-      result = std::max(result, solveSome(some, count, bodies.velocity.data()));
+      result = std::max(result, solveSome(some, count, Order::frictionFirst, bodies.velocity.data()));
       for (int k = 0; k < count; ++k)
         if (static_cast<double>(some[k]->change) >= above) rough_[kept++] = which[k];
     }

@@ -5,6 +5,10 @@
 // speculative contact): v_n >= -gap / h. What overlaps is moved apart on places alone, as the first sweep of
 // the next sub-step comes by.
 //
+// The second sweep of a sub-step is the first one's mirror image, in the order of the colours and within a
+// contact, and so is the first one of the next sub-step: errors that one order leaves on one side, which make
+// walls lean, do not add up (symmetric successive over-relaxation; Young 1971, ch. 15).
+//
 // Number: what a block is worked in. The bodies' velocities and places are in float64 whatever it is, and
 // blocks work on differences of those.
 #pragma once
@@ -92,6 +96,9 @@ class BlockSweeps {
     Number spare;              // all parted faster than they need by so much in the last sweep, m/s; 0: none
     Vector nx, ny, friction;
     Vector inverseA, inertiaA, inverseB, inertiaB;
+    /// How much an impulse at one point gives the other one in its place, first to second and back; and one
+    /// over 1 less their product.
+    Vector secondByFirst, firstBySecond, both;
     Vector total;  // N s along the normal so far in this step, but for the last sub-step
     Point points[2];
   };
@@ -99,15 +106,24 @@ class BlockSweeps {
   static void fillBlock(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts,
                         const int* which, Number relaxation);
   static void begin(Block& block, Motion* moved, Number perSecond, const MoveApart& apart);
+  enum class Order { normalsFirst, frictionFirst };
   static void separate(const Block& block, const MoveApart& apart, Motion* moved, Relative<Vector>& d);
   template <int kPoints>
-  static Pushes solve(Block& block, Relative<Vector> v);
-  static Number solveSome(Block* const* some, int count, Motion* velocity);
+  static void changeNormals(Block& block, const Relative<Vector>& v, Vector parts[kPoints],
+                            Vector change[kPoints]);
+  template <int kPoints>
+  static Pushes solve(Block& block, Relative<Vector> v, Order order);
+  static Number solveSome(Block* const* some, int count, Order order, Motion* velocity);
+  /// todo(begin, end) for the blocks of each colour, from the first to the last one or back.
+  template <class Todo>
+  void eachColour(bool back, Todo&& todo) const;
 
   std::vector<Block> blocks_;
   std::vector<int> colourEnds_;  // in blocks_
   std::vector<int> rough_;       // blocks
   Number change_ = 0;            // of the last sweep
+  bool back_ = false;            // the first sweep of this sub-step went from the last colour to the first
+  bool relaxed_ = false;
 };
 
 }  // namespace smokebox
