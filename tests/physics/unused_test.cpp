@@ -86,8 +86,9 @@ TEST(Unused, AFeatureHasMemoryOnlyWhereItIsUsed) {
     EXPECT_FALSE(modelled(wind(off), on.stage));
     EXPECT_TRUE(modelled(wind(on), on.stage));
     // The lists of faces near surfaces may be shorter with a feature: what has no field is not compared.
-    if (on.fields > 0)
+    if (on.fields > 0) {
       EXPECT_GE(World(wind(on), {}).bytes(), World(wind(kNone), {}).bytes() + on.fields * field) << on.stage;
+    }
   }
 }
 
