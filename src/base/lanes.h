@@ -82,10 +82,9 @@ SMOKEBOX_INLINE LaneMask lanesOfBits(std::uint16_t bits) {
   return (place & static_cast<int>(bits)) != 0;
 }
 
-/// Lane k of v becomes `value`.
-template <class V, class T>
-SMOKEBOX_INLINE void setLane(V& v, int k, T value) {
-  T lanes[kLanes];
+/// Lane k of v becomes `value`. No template: it would take v for one that lies at multiples of 64 bytes.
+SMOKEBOX_INLINE void setLane(Lanes& v, int k, float value) {
+  float lanes[kLanes];
   std::memcpy(lanes, &v, sizeof(lanes));
   lanes[k] = value;
   std::memcpy(&v, lanes, sizeof(lanes));
