@@ -14,7 +14,8 @@ constexpr int kSpare = 4;
 // Blocks of a colour do not meet: so many are read, solved and written together, and the processor works on
 // several at a time.
 constexpr int kSome = 4;
-constexpr float kFar = 1e30F;  // m/s
+constexpr float kFar = 1e30F;      // m/s
+constexpr double kRoughest = 1e6;  // a friction beyond all slip, and finite in float32
 }  // namespace
 
 template <class Number>
@@ -60,7 +61,7 @@ void BlockSweeps<Number>::fillBlock(Block& block, const Bodies& bodies, const st
     auto brief = [](double x) { return static_cast<Number>(x); };
     numbers(block.nx)[l] = brief(c.normal.x);
     numbers(block.ny)[l] = brief(c.normal.y);
-    numbers(block.friction)[l] = brief(c.friction);
+    numbers(block.friction)[l] = brief(std::min(c.friction, kRoughest));
     numbers(block.inverseA)[l] = brief(a.mass);
     numbers(block.inertiaA)[l] = brief(a.inertia);
     numbers(block.inverseB)[l] = brief(b.mass);
@@ -192,7 +193,9 @@ inline void BlockSweeps<Number>::changeNormals(Block& block, const Relative<Vect
     const Vector alone0 = larger(asked[0] + block.firstBySecond * p1, -p0),
                  alone1 = larger(asked[1] + block.secondByFirst * p0, -p1);
     const auto hold = smaller(x0, x1) < Vector{};
-    const auto first = x0 > x1;
+    // The one that would bear more, if it bears anything alone.
+    const Vector none = wide<Number>(-kFar);
+    const auto first = choose(alone0 > -p0, x0, none) > choose(alone1 > -p1, x1, none);
     change[0] = choose(hold, choose(first, alone0, -p0), d0);
     change[1] = choose(hold, choose(first, -p1, alone1), d1);
   }
@@ -240,7 +243,8 @@ inline typename BlockSweeps<Number>::Pushes BlockSweeps<Number>::solve(Block& bl
     // The change of the velocity: all that was amiss, or less where the contact lets go.
     const Vector amiss = choose(parts[k] < Vector{}, -parts[k], parts[k]);
     largest = larger(largest, choose(change[k] != Vector{}, amiss, Vector{}));
-    least = smaller(least, choose(p.massN > Vector{}, choose(total > Vector{}, Vector{}, parts[k]), far));
+    const Vector bears = larger(total, larger(p.impulseT, -p.impulseT));
+    least = smaller(least, choose(p.massN > Vector{}, choose(bears > Vector{}, Vector{}, parts[k]), far));
   }
   v.x += givenX * normal;
   v.y += givenY * normal;

@@ -5,7 +5,7 @@ namespace smokebox {
 namespace {
 // So few contacts would leave most lanes empty: they are solved one by one.
 constexpr int kFew = 12;
-// More contacts than so many are worked in float32. A stack of 40 boxes leans by its rounding.
+// More contacts than so many are worked in float32 while they are rough.
 constexpr int kBrief = 1000;
 // More points than so many are swept but once in a sub-step, and each one gives more than it is asked for
 // (successive over-relaxation): bins of 10,000 overlap as little as by two sweeps. A wall of 100 by 100 boxes
@@ -15,12 +15,12 @@ constexpr double kOverRelaxed = 1.45;
 }  // namespace
 
 void ContactBlocks::build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest,
-                          Vec2 down) {
+                          Vec2 down, bool areRough) {
   const int count = static_cast<int>(contacts.size());
   exact_.clear();
   brief_.clear();
   points_ = 0;
-  isBrief_ = count > kBrief;
+  isBrief_ = areRough && count > kBrief;
   if (count <= kFew) {
     layout_.clear(count, rest);
     return;

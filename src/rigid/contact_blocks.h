@@ -12,10 +12,12 @@ namespace smokebox {
 class ContactBlocks {
  public:
   /// Lays the contacts out, which need no effective masses; `down`: along gravity, of length 1, or (0, 0).
-  /// Those that find no place are listed in `rest`.
-  void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest, Vec2 down);
+  /// Those that find no place are listed in `rest`. `areRough`: the sweeps of the last step did not settle
+  /// them.
+  void build(const Bodies& bodies, const std::vector<Contact>& contacts, std::vector<int>& rest, Vec2 down,
+             bool areRough);
   bool empty() const { return layout_.blocks() == 0; }
-  /// Points that a sweep solves, empty lanes too.
+  /// Points of all contacts.
   long points() const { return points_; }
 
   /// So many that one sweep in a sub-step has to do.

@@ -154,10 +154,12 @@ void RigidSystem::State::solveContacts(double h) {
     const long work = points(), cost = work + springs.sweepCost();
     conjugate.restart();
     double enough = std::numeric_limits<double>::infinity();  // the first sweep leaves none out
+    double last = 0;
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       if (accelerates && sweeps >= kPlainSweeps) conjugate.remember(bodies, blocks, spare, narrow.lively());
       const double change = sweep(h, round == 0 && sweeps == 1, enough);
       enough = kSpare * change;
+      last = change;
       left -= cost;
       if (sweeps == 1)
         settled =
@@ -170,6 +172,7 @@ void RigidSystem::State::solveContacts(double h) {
       if (accelerates && sweeps >= kPlainSweeps)
         conjugate.extrapolate(bodies, blocks, spare, narrow.lively());
     }
+    leftUndone = std::max(leftUndone, last);
     giveBackSpare();
     // Who would stray from the way expected of it has its pairs looked at again, before it moves.
     const auto stir = narrow.stir(bodies, nullptr, broad, gravity, blocks, timeLeft);

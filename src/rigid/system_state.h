@@ -106,6 +106,7 @@ struct RigidSystem::State {
   RigidTotals contactTotals;  // contacts and overlap of the last step
   std::vector<int> gone;
   double dt = 0, timeLeft = 0;
+  double leftUndone = 0;    // largest change of a relative velocity in a last sweep of this step, m/s
   double typicalWidth = 0;  // mean of the moving bodies' smallest widths, m
 };
 

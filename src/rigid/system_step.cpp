@@ -16,6 +16,8 @@ namespace {
 constexpr double kRestingSubSteps = 2;
 // Contacts that overlap by more than this share of the thinner one's width do not bounce.
 constexpr double kSqueezed = 0.01;
+// Contacts are rough where sweeps leave more undone than this share of what gravity adds in a sub-step.
+constexpr double kUnsettled = 0.2;
 // What changes a velocity by more than gravity does in so many sub-steps may be a blow.
 constexpr double kForce = 4;
 }  // namespace
@@ -139,7 +141,9 @@ void RigidSystem::State::beginStep(double step) {
   broad.update(bodies, gravity, dt);
   narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
   const double pull = length(gravity);
-  blocks.build(bodies, narrow.calm(), uncoloured, pull > 0 ? (1 / pull) * gravity : Vec2{});
+  blocks.build(bodies, narrow.calm(), uncoloured, pull > 0 ? (1 / pull) * gravity : Vec2{},
+               leftUndone > kUnsettled * pull * dt / method.subSteps);
+  leftUndone = 0;
   spare.clear();
   for (const int k : uncoloured) {
     spare.emplace_back(narrow.calm()[k]);
