@@ -25,11 +25,12 @@ struct InverseMass {
 inline Turn turnedBy(Turn turn, double angleRad) {
   Turn by;
   if (angleRad < 0.25 && angleRad > -0.25) {
+    constexpr double kS3 = -1.0 / 6, kS5 = -kS3 / 20, kS7 = -kS5 / 42, kS9 = -kS7 / 72, kS11 = -kS9 / 110;
+    constexpr double kC2 = -0.5, kC4 = -kC2 / 12, kC6 = -kC4 / 30, kC8 = -kC6 / 56, kC10 = -kC8 / 90,
+                     kC12 = -kC10 / 132;
     const double q = angleRad * angleRad;
-    by.s =
-        angleRad * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110 * (1 - q / 156))))));
-    by.c =
-        1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90 * (1 - q / 132 * (1 - q / 182))))));
+    by.s = angleRad + angleRad * q * (kS3 + q * (kS5 + q * (kS7 + q * (kS9 + q * kS11))));
+    by.c = 1 + q * (kC2 + q * (kC4 + q * (kC6 + q * (kC8 + q * (kC10 + q * kC12)))));
   } else {
     by = turnBy(angleRad);
   }

@@ -75,39 +75,36 @@ bool areTwo(const SolvedContact& contact) { return contact.count == 2 && contact
 }  // namespace
 
 void prepare(const Bodies& bodies, std::vector<SolvedContact>& contacts, double h) {
+  const double perSecond = 1 / h;
   for (SolvedContact& contact : contacts)
     for (int k = 0; k < contact.count; ++k) {
       const ContactPoint& p = contact.points[k];
-      contact.allowed[k] = std::max(p.gap + gapMoved(bodies, contact, p), 0.0) / h;
+      contact.allowed[k] = std::max(p.gap + gapMoved(bodies, contact, p), 0.0) * perSecond;
     }
 }
 
 double solve(Bodies& bodies, SolvedContact& contact) {
-  double& largest = contact.change;
-  largest = 0;
+  double largest = 0;
   const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
-  Motion va = bodies.velocity[contact.a], vb = bodies.velocity[contact.b];
+  Motion &a = bodies.velocity[contact.a], &b = bodies.velocity[contact.b];
+  // What counts is b's velocity less a's; each of the two is written once.
+  double vx = b.x - a.x, vy = b.y - a.y, turnA = a.turn, turnB = b.turn;
   const Vec2 n = contact.normal, t = perpendicular(n);
+  const double inverse = ma.mass + mb.mass;
   auto speed = [&](Vec2 along, const ContactPoint& p) {
-    return along.x * (vb.x - va.x) + along.y * (vb.y - va.y) + vb.turn * cross(p.armB, along) -
-           va.turn * cross(p.armA, along);
+    return (along.x * vx + along.y * vy) + (turnB * cross(p.armB, along) - turnA * cross(p.armA, along));
   };
-  auto push = [&](Vec2 along, const ContactPoint& p, double impulse) {
-    va.x -= ma.mass * along.x * impulse;
-    va.y -= ma.mass * along.y * impulse;
-    va.turn -= ma.inertia * cross(p.armA, along) * impulse;
-    vb.x += mb.mass * along.x * impulse;
-    vb.y += mb.mass * along.y * impulse;
-    vb.turn += mb.inertia * cross(p.armB, along) * impulse;
+  Vec2 given{};
+  auto push = [&](Vec2 along, double impulse) {
+    vx += inverse * along.x * impulse;
+    vy += inverse * along.y * impulse;
+    given = given + impulse * along;
   };
-  auto change = [&](int k, double total) {
-    ContactPoint& p = contact.points[k];
-    const double by = total - p.impulseN;
-    p.impulseN = total;
-    push(n, p, by);
-    if (contact.massN[k] > 0) largest = std::max(largest, std::abs(by) / contact.massN[k]);
+  auto turn = [&](Vec2 along, const ContactPoint& p, double impulse) {
+    turnA -= ma.inertia * cross(p.armA, along) * impulse;
+    turnB += mb.inertia * cross(p.armB, along) * impulse;
   };
-  contact.spare = 0;
+  contact.spare = contact.change = 0;
   double parts = std::numeric_limits<double>::infinity();
   auto isIdle = [&](int k) {
     const ContactPoint& p = contact.points[k];
@@ -119,6 +116,14 @@ double solve(Bodies& bodies, SolvedContact& contact) {
     contact.spare = parts;
     return 0;
   }
+  auto change = [&](int k, double total) {
+    ContactPoint& p = contact.points[k];
+    const double by = total - p.impulseN;
+    p.impulseN = total;
+    turn(n, p, by);
+    largest = std::max(largest, std::abs(by) * contact.response[2 * k]);
+    return by;
+  };
   if (areTwo(contact)) {
     const ContactPoint &p = contact.points[0], &q = contact.points[1];
     const double* k = contact.response;
@@ -126,24 +131,29 @@ double solve(Bodies& bodies, SolvedContact& contact) {
                             speed(n, q) + contact.allowed[1] - k[1] * p.impulseN - k[2] * q.impulseN};
     double total[2];
     solveBoth(k, free, total);
-    change(0, total[0]);
-    change(1, total[1]);
+    push(n, change(0, total[0]) + change(1, total[1]));
   } else {
     for (int k = 0; k < contact.count; ++k) {
       const ContactPoint& p = contact.points[k];
-      change(k, std::max(p.impulseN - contact.massN[k] * (speed(n, p) + contact.allowed[k]), 0.0));
+      push(n, change(k, std::max(p.impulseN - contact.massN[k] * (speed(n, p) + contact.allowed[k]), 0.0)));
     }
   }
   for (int k = 0; k < contact.count; ++k) {
     ContactPoint& p = contact.points[k];
     const double most = contact.friction * p.impulseN;
     const double tangential = std::clamp(p.impulseT - contact.massT[k] * speed(t, p), -most, most);
-    push(t, p, tangential - p.impulseT);
+    const double by = tangential - p.impulseT;
+    push(t, by);
+    turn(t, p, by);
     p.impulseT = tangential;
   }
-  bodies.velocity[contact.a] = va;
-  bodies.velocity[contact.b] = vb;
-  return largest;
+  a.x -= ma.mass * given.x;
+  a.y -= ma.mass * given.y;
+  a.turn = turnA;
+  b.x += mb.mass * given.x;
+  b.y += mb.mass * given.y;
+  b.turn = turnB;
+  return contact.change = largest;
 }
 
 double solve(Bodies& bodies, std::vector<SolvedContact>& contacts, double enough) {

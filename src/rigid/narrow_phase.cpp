@@ -37,10 +37,11 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 }  // namespace
 
 // A third of the way for each axis.
-void NarrowPhase::Expected::setLimit(double to) {
-  limit = to;
-  const double part = to / 3, turn = reach > 0 ? part / reach : kNoBound;
-  within = {part * part, part * part, turn * turn};
+void NarrowPhase::setLimit(int body, double limit) {
+  const double reach = rooms_[body].reach;
+  const double part = limit / 3, turn = reach > 0 ? part / reach : kNoBound;
+  rooms_[body].limit = limit;
+  expected_[body].within = {part * part, part * part, turn * turn};
 }
 
 void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
@@ -49,6 +50,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   elapsed_ = 0;
   const double slow = kCalmSubSteps * h_ * length(gravity) * dt;
   expected_.resize(count);
+  rooms_.resize(count);
   seen_.resize(count);
   stirred_.clear();
   way_.resize(count);
@@ -58,18 +60,20 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
     const double room = moves ? fall + kStray * bodies.extent[b].thinnest : 0;
     const Extent& extent = bodies.extent[b];
-    expected_[b] = {v, room, 0, extent.turningReach, 0, {}};
-    expected_[b].setLimit(moves ? room : kNoBound);
+    expected_[b].velocity = v;
+    rooms_[b] = {room, 0, extent.turningReach};
+    setLimit(b, moves ? room : kNoBound);
     const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
-    seen_[b] = {bodies.position[b],
-                v.linear(),
-                v.turn,
-                bodies.angleRad[b],
-                extent.thinnest,
-                extent.turningReach,
-                room,
-                bodies.surface[b].bounce > 0,
-                isMoving && !bodies.moves(b)};
+    Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
+    seen.position = bodies.position[b];
+    seen.velocity = v.linear();
+    seen.turn = v.turn;
+    seen.angleRad = bodies.angleRad[b];
+    seen.thinnest = extent.thinnest;
+    seen.turningReach = extent.turningReach;
+    seen.room = room;
+    seen.bounces = bodies.surface[b].bounce > 0;
+    seen.pushes = isMoving && !bodies.moves(b);
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
@@ -296,9 +300,43 @@ void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
   }
 }
 
+bool NarrowPhase::findLeaving(const Bodies& bodies, const std::vector<Motion>* struck, double timeLeft) {
+  const double later = timeLeft > 1.5 * h_ ? 1 : 0;
+  const double h = h_, elapsed = elapsed_;
+  const auto on = [&](int b) {
+    const Lanes by = h * load(&bodies.velocity[b].x) - h * load(&expected_[b].velocity.x);
+    return struck ? by + load(&(*struck)[b].x) : by;
+  };
+  const auto off = [&](int b, Lanes by) {
+    return load(&bodies.moved[b].x) + by - elapsed * load(&expected_[b].velocity.x);
+  };
+  // Most are far from leaving; who is not is put down first, which takes no guess at what comes next.
+  leaving_.resize(bodies.count());
+  int count = 0;
+  for (int b = 0; b < bodies.count(); ++b) {
+    const Lanes by = on(b), now = off(b, by), then = now + later * by;
+    const Lanes p = now * now, q = then * then;
+    leaving_[count] = b;
+    count += anyOf((p > q ? p : q) > load(&expected_[b].within.x)) ? 1 : 0;
+  }
+  leaving_.resize(count);
+  bool any = false;
+  std::erase_if(leaving_, [&](int b) {
+    const Room& room = rooms_[b];
+    const auto leaves = [&](Lanes by) {
+      const double left = room.limit - std::abs(by[2]) * room.reach;
+      return left < 0 || by[0] * by[0] + by[1] * by[1] > left * left;
+    };
+    const Lanes by = on(b), now = off(b, by);
+    const bool leavesNow = leaves(now);
+    any |= leavesNow;
+    return !leavesNow && !leaves(now + later * by);
+  });
+  return any;
+}
+
 NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>* struck,
                                     BroadPhase& broad, Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
-  leaving_.clear();
   turned_.clear();
   auto wayOf = [&](int b) -> Motion {
     const Motion &v = bodies.velocity[b], by = struck ? (*struck)[b] : Motion{};
@@ -308,36 +346,17 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
   // Those whose pairs are lively already: does the box still hold the way?
   for (const int b : stirred_) {
     const Motion& v = bodies.velocity[b];
-    Expected& e = expected_[b];
-    const Vec2 changed = v.linear() - e.velocity.linear();
-    const double slack = 0.5 * e.room / timeLeft;
+    const Vec2 changed = v.linear() - expected_[b].velocity.linear();
+    const double room = rooms_[b].room, slack = 0.5 * room / timeLeft;
     if (dot(changed, changed) <= slack * slack) continue;
-    now |= length(changed) * h_ > 0.5 * e.room;
-    e.velocity = v;
+    now |= length(changed) * h_ > 0.5 * room;
+    expected_[b].velocity = v;
     turned_.push_back(b);
   }
-  const double later = timeLeft > 1.5 * h_ ? 1 : 0;
-  const double h = h_, elapsed = elapsed_;
-  for (int b = 0; b < bodies.count(); ++b) {
-    const Expected& e = expected_[b];
-    Lanes on = h * load(&bodies.velocity[b].x) - h * load(&e.velocity.x);
-    if (struck) on += load(&(*struck)[b].x);
-    const Lanes off = load(&bodies.moved[b].x) + on - elapsed * load(&e.velocity.x), then = off + later * on;
-    // Most are far from leaving.
-    const Lanes a = off * off, c = then * then;
-    if (!anyOf((a > c ? a : c) > load(&e.within.x))) continue;
-    auto leaves = [&](Lanes by) {
-      const double left = e.limit - std::abs(by[2]) * e.reach;
-      return left < 0 || by[0] * by[0] + by[1] * by[1] > left * left;
-    };
-    const bool leavesNow = leaves(off);
-    if (!leavesNow && !leaves(then)) continue;
-    now |= leavesNow;
-    leaving_.push_back(b);
-  }
+  now |= findLeaving(bodies, struck, timeLeft);
   for (const int b : leaving_) {
     expected_[b].velocity = bodies.velocity[b];
-    expected_[b].setLimit(kNoBound);
+    setLimit(b, kNoBound);
     stirred_.push_back(b);
   }
   if (leaving_.empty() && turned_.empty()) return Stir::none;

@@ -65,15 +65,20 @@ class NarrowPhase {
     int pair = -1;               // in the broad phase's list; -1: found within the step
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
   };
+  /// What is expected of a body's way, as all are looked at in each sub-step.
   struct Expected {
-    Motion velocity;   // at the step's start
+    Motion velocity;         // at the step's start
+    Motion within{0, 0, 0};  // who is not off by more, squared, along any axis does not leave
+  };
+  /// What else that takes of those few that are off by more.
+  struct Room {
     double room = 0;   // how far its points may be from where that takes them, m
     double limit = 0;  // the same while its pairs are calm and may be stirred, else without bound
     double reach = 0;  // how far a turn moves its points, m/rad
-    double unused = 0;
-    Motion within{0, 0, 0};  // who is not off by more, squared, along any axis does not leave; see setLimit()
-    void setLimit(double to);
   };
+  void setLimit(int body, double limit);
+  /// Puts into leaving_ who leaves in this sub-step or in the next one; does any in this one?
+  bool findLeaving(const Bodies& bodies, const std::vector<Motion>* struck, double timeLeft);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair, const Bodies& bodies);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
@@ -82,7 +87,7 @@ class NarrowPhase {
     Vec2 position, velocity;
     double turn = 0, angleRad = 0;
     double thinnest = 0, turningReach = 0;
-    double room = 0;  // as Expected's
+    double room = 0;  // as Room's
     bool bounces = false;
     bool pushes = false;  // moves, and nothing moves it
   };
@@ -104,6 +109,7 @@ class NarrowPhase {
   std::vector<LivelyPair> pairs_;
   std::size_t refreshed_ = 0;  // so many of them have been looked at in this sub-step
   std::vector<Expected> expected_;
+  std::vector<Room> rooms_;
   std::vector<Seen> seen_;
   std::vector<int> stirred_;
   std::vector<Motion> way_;                // of those that leave theirs

@@ -233,7 +233,10 @@ Vec2 RigidSystem::anchorPoint(const Anchor& anchor) const {
   return anchor.body < 0 ? anchor.at : toWorld(state_->bodies.frameNow(anchor.body), anchor.at);
 }
 
-const std::vector<Touch>& RigidSystem::touches() const { return state_->touches; }
+const std::vector<Touch>& RigidSystem::touches() const {
+  state_->sortTouches();
+  return state_->touches;
+}
 
 RigidTotals RigidSystem::totals() const {
   const State& s = *state_;

@@ -48,7 +48,7 @@ struct RigidSystem::State {
   void keepInside();
   void warmStartAll(double h);
   void collectTouch(const Contact& contact);
-  void sortTouches(std::ptrdiff_t calm);
+  void sortTouches();
   void wrap(int body);
   bool outside(int body) const;
 
@@ -101,9 +101,10 @@ struct RigidSystem::State {
   SpringSet springs;
   JointSet joints;
 
-  std::vector<Turn> turned;  // by how much since the step began
-  std::vector<Touch> touches;
-  RigidTotals contactTotals;  // contacts and overlap of the last step
+  std::vector<Turn> turned;        // by how much since the step began
+  std::vector<Touch> touches;      // in order once they are asked for
+  std::ptrdiff_t calmTouches = 0;  // where those of calm pairs begin, until then
+  RigidTotals contactTotals;       // contacts and overlap of the last step
   std::vector<int> gone;
   double dt = 0, timeLeft = 0;
   double leftUndone = 0;    // largest change of a relative velocity in a last sweep of this step, m/s

@@ -138,6 +138,7 @@ void RigidSystem::State::beginStep(double step) {
   startVelocities(dt / method.subSteps);
   findSeenByForces();
   touches.clear();
+  calmTouches = 0;
   broad.update(bodies, gravity, dt);
   narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
   const double pull = length(gravity);
@@ -271,10 +272,12 @@ void RigidSystem::State::move(double h) {
   timeLeft -= h;
 }
 
-// Those of the calm pairs, from `calm` on, are in order already, but for the walls'.
-void RigidSystem::State::sortTouches(std::ptrdiff_t calm) {
+// Those of the calm pairs are in order already, but for the walls'.
+void RigidSystem::State::sortTouches() {
+  const auto middle =
+      touches.begin() + std::exchange(calmTouches, static_cast<std::ptrdiff_t>(touches.size()));
+  if (middle == touches.end()) return;
   auto isBefore = [](const Touch& p, const Touch& q) { return p.a < q.a || (p.a == q.a && p.b < q.b); };
-  const auto middle = touches.begin() + calm;
   const auto ofBodies =
       std::partition_point(middle, touches.end(), [](const Touch& touch) { return touch.a < 0; });
   std::stable_sort(touches.begin(), middle, isBefore);
@@ -365,7 +368,7 @@ void RigidSystem::State::endStep(double step) {
   }
   turned.resize(bodies.count());
   for (int b = 0; b < bodies.count(); ++b) turned[b] = turnedBy({}, bodies.moved[b].turn);
-  const auto ofLively = static_cast<std::ptrdiff_t>(touches.size());
+  calmTouches = static_cast<std::ptrdiff_t>(touches.size());
   for (std::size_t k = 0; k < narrow.calm().size(); ++k) {
     Contact& contact = narrow.calm()[k];
     blocks.readBack(static_cast<int>(k), contact);
@@ -376,7 +379,6 @@ void RigidSystem::State::endStep(double step) {
     for (int p = 0; counts && p < contact.count; ++p) count(contact.points[p], contact.points[p].gap);
   }
   if (pressing) press.end(bodies);
-  sortTouches(ofLively);
   narrow.endStep(broad);
   springs.endStep(bodies);
   joints.endStep(bodies);
