@@ -135,22 +135,32 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
   std::sort(found_.begin(), found_.end());
   found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
 
-  // Pairs that are left or new, in order.
-  merged_.clear();
-  auto fresh = found_.begin();
-  for (const BodyPair& pair : pairs_) {
-    const PairKey& key = pair.key;
-    for (; fresh != found_.end() && *fresh < key; ++fresh) merged_.push_back({*fresh});
-    if (fresh != found_.end() && *fresh == key) ++fresh;
-    if (refitted_[key.a] || refitted_[key.b]) {
-      if (!listed_[key.a] || !listed_[key.b] || bodies.areJoined(key.a, key.b)) continue;
-      if (!fat_[key.a].meets(shifted(fat_[key.b], shiftOf(key)))) continue;
-    }
-    merged_.push_back(pair);
-  }
-  for (; fresh != found_.end(); ++fresh) merged_.push_back({*fresh});
-  pairs_.swap(merged_);
+  dropAndInsert(bodies);
   refitted_.assign(count, 0);
+}
+
+/// Takes out the pairs whose boxes have parted and puts in those of found_ that are new; all stay in order.
+void BroadPhase::dropAndInsert(const Bodies& bodies) {
+  const auto isOver = [&](const PairKey& key) {
+    if (!refitted_[key.a] && !refitted_[key.b]) return false;
+    return !listed_[key.a] || !listed_[key.b] || bodies.areJoined(key.a, key.b) ||
+           !fat_[key.a].meets(shifted(fat_[key.b], shiftOf(key)));
+  };
+  std::size_t left = 0, fresh = 0, at = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const PairKey& key = pairs_[k].key;
+    while (at < found_.size() && found_[at] < key) found_[fresh++] = found_[at++];
+    if (at < found_.size() && found_[at] == key) ++at;
+    if (isOver(key)) continue;
+    if (left != k) pairs_[left] = pairs_[k];
+    ++left;
+  }
+  while (at < found_.size()) found_[fresh++] = found_[at++];
+  pairs_.resize(left + fresh);
+  for (std::size_t to = pairs_.size(); fresh > 0;) {
+    const bool isNew = left == 0 || pairs_[left - 1].key < found_[fresh - 1];
+    pairs_[--to] = isNew ? BodyPair{found_[--fresh]} : pairs_[--left];
+  }
 }
 
 void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, const std::vector<Motion>& way,

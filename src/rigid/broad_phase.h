@@ -19,7 +19,7 @@ struct PairKey {
 
 struct BodyPair {
   PairKey key;
-  // Contacts of the last step: a range of the narrow phase's memory ...
+  // Contacts of the last step, from then on of this one: a range of the narrow phase's ...
   int first = 0, count = 0;
   // ... all that are closer than `margin` (below 0: to be found anew) ...
   double margin = -1;
@@ -52,6 +52,7 @@ class BroadPhase {
   bool fit(const Bodies& bodies, int body, Vec2 gravity, double dt, Vec2 later = {});
   void refitTree(long moved);
   void search(const Bodies& bodies, int body, bool imagesOnly, std::vector<PairKey>& found) const;
+  void dropAndInsert(const Bodies& bodies);
   void searchAll(const Bodies& bodies, long moved, std::vector<PairKey>& found);
 
   RigidWalls walls_;
@@ -59,7 +60,7 @@ class BroadPhase {
   std::vector<char> listed_, refitted_;  // by body
   BoxTree tree_;
   std::vector<int> items_;
-  std::vector<BodyPair> pairs_, merged_;
+  std::vector<BodyPair> pairs_;
   std::vector<PairKey> found_, late_;  // late: found within a step
   long sinceBuild_ = 0;
 };

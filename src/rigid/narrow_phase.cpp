@@ -32,6 +32,7 @@ constexpr double kAhead = 4;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
+constexpr std::size_t kTogether = 256;  // pairs
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -77,14 +78,24 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
   }
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
-  calmFirst_.assign(pairs.size() + 1, 0);
   pairsListed_ = false;
   calm_.clear();
   lively_.clear();
   pairs_.clear();
+  // Some at a time: the second look finds them in the cache.
+  for (std::size_t k = 0; k < pairs.size(); k += kTogether) {
+    const std::size_t end = std::min(k + kTogether, pairs.size());
+    sortPairs(broad, k, end, slow, dt);
+    takePairs(bodies, broad, k, end);
+  }
+  for (SolvedContact& contact : lively_) contact.total = contact.approach = 0;
+  dropped_.assign(calm_.size(), 0);
+}
+
+void NarrowPhase::sortPairs(BroadPhase& broad, std::size_t begin, std::size_t end, double slow, double dt) {
   due_.clear();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    BodyPair& pair = pairs[k];
+  for (std::size_t k = begin; k < end; ++k) {
+    BodyPair& pair = broad.pairs()[k];
     const Seen &a = seen_[pair.key.a], &b = seen_[pair.key.b];
     const double way = relativeWay(a, b, dt);
     if (movesFast(a, b, way, slow, dt)) {
@@ -94,10 +105,14 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
       due_.push_back(static_cast<int>(k));
     }
   }
+}
+
+void NarrowPhase::takePairs(const Bodies& bodies, BroadPhase& broad, std::size_t begin, std::size_t end) {
+  auto& pairs = broad.pairs();
   std::size_t next = 0;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
+  for (std::size_t k = begin; k < end; ++k) {
     BodyPair& pair = pairs[k];
-    calmFirst_[k] = static_cast<int>(calm_.size());
+    const std::size_t first = calm_.size();
     if (next < due_.size() && due_[next] == static_cast<int>(k)) {
       askAhead(
           next, [&](int due) { return pairs[due].key; }, bodies);
@@ -106,21 +121,20 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
       double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
       if (clear <= pair.margin)
         clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, calm_, {});
-      for (std::size_t c = calmFirst_[k]; c < calm_.size(); ++c)
+      for (std::size_t c = first; c < calm_.size(); ++c)
         inheritImpulses(memory_.data() + pair.first, pair.count, calm_[c]);
       pair.apart = clear >= pair.margin;
       pair.margin = std::max(pair.margin, clear);
     } else if (!livelyPair_[k]) {
-      calm_.insert(calm_.end(), memory_.begin() + pair.first, memory_.begin() + pair.first + pair.count);
-      for (auto c = calm_.end() - pair.count; c != calm_.end(); ++c) {
-        if (bodies.surfacesChanged) setSurfaces(bodies, *c);
-        c->total = c->approach = 0;
+      for (int c = 0; c < pair.count; ++c) {
+        Contact& kept = calm_.emplace_back(memory_[pair.first + c]);
+        if (bodies.surfacesChanged) setSurfaces(bodies, kept);
+        kept.total = kept.approach = 0;
       }
     }
+    pair.first = static_cast<int>(first);
+    pair.count = static_cast<int>(calm_.size() - first);
   }
-  calmFirst_[pairs.size()] = static_cast<int>(calm_.size());
-  for (SolvedContact& contact : lively_) contact.total = contact.approach = 0;
-  dropped_.assign(calm_.size(), 0);
 }
 
 double NarrowPhase::relativeWay(const Seen& a, const Seen& b, double dt) {
@@ -175,18 +189,21 @@ void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, i
   pairs_.push_back(made);
 }
 
+// Those in which a body is the first one lie side by side as they are.
 void NarrowPhase::listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs) {
-  pairsFirst_.assign(bodies.count() + 2, 0);
+  pairsOfFirst_.assign(bodies.count() + 1, 0);
+  pairsOfSecond_.assign(bodies.count() + 2, 0);
   for (const BodyPair& pair : pairs) {
-    ++pairsFirst_[pair.key.a + 2];
-    ++pairsFirst_[pair.key.b + 2];
+    ++pairsOfFirst_[pair.key.a + 1];
+    ++pairsOfSecond_[pair.key.b + 2];
   }
-  for (int b = 2; b < bodies.count() + 2; ++b) pairsFirst_[b] += pairsFirst_[b - 1];
-  pairsAt_.resize(2 * pairs.size());
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    pairsAt_[pairsFirst_[pairs[k].key.a + 1]++] = static_cast<int>(k);
-    pairsAt_[pairsFirst_[pairs[k].key.b + 1]++] = static_cast<int>(k);
+  for (int b = 0; b < bodies.count(); ++b) {
+    pairsOfFirst_[b + 1] += pairsOfFirst_[b];
+    pairsOfSecond_[b + 2] += pairsOfSecond_[b + 1];
   }
+  pairsAt_.resize(pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    pairsAt_[pairsOfSecond_[pairs[k].key.b + 1]++] = static_cast<int>(k);
   pairsListed_ = true;
 }
 
@@ -363,19 +380,20 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
   bool any = false;
   const auto& pairs = broad.pairs();
   if (!pairsListed_) listPairs(bodies, pairs);
-  for (const int body : leaving_)
-    for (int at = pairsFirst_[body]; at < pairsFirst_[body + 1]; ++at) {
-      const int k = pairsAt_[at];
-      if (livelyPair_[k]) continue;
-      livelyPair_[k] = 1;
-      any = true;
-      const int first = calmFirst_[k], count = calmFirst_[k + 1] - first;
-      for (int c = first; c < first + count; ++c) {
-        blocks.drop(c, calm_[c]);
-        dropped_[c] = 1;
-      }
-      makeLively(pairs[k].key, k, calm_.data() + first, count);
+  const auto enliven = [&](int k) {
+    if (std::exchange(livelyPair_[k], 1)) return;
+    any = true;
+    const BodyPair& pair = pairs[k];
+    for (int c = pair.first; c < pair.first + pair.count; ++c) {
+      blocks.drop(c, calm_[c]);
+      dropped_[c] = 1;
     }
+    makeLively(pair.key, k, calm_.data() + pair.first, pair.count);
+  };
+  for (const int body : leaving_) {
+    for (int at = pairsOfSecond_[body]; at < pairsOfSecond_[body + 1]; ++at) enliven(pairsAt_[at]);
+    for (int k = pairsOfFirst_[body]; k < pairsOfFirst_[body + 1]; ++k) enliven(k);
+  }
   late_.clear();
   leaving_.insert(leaving_.end(), turned_.begin(), turned_.end());
   for (const int b : leaving_) way_[b] = wayOf(b);
@@ -404,16 +422,14 @@ void NarrowPhase::stopPassing(const Bodies& bodies, const BroadPhase& broad, dou
 void NarrowPhase::endStep(BroadPhase& broad) {
   memory_.swap(calm_);
   auto& pairs = broad.pairs();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    pairs[k].first = calmFirst_[k];
-    pairs[k].count = livelyPair_[k] ? 0 : calmFirst_[k + 1] - calmFirst_[k];
-    if (livelyPair_[k]) pairs[k].margin = -1;
-  }
-  for (const LivelyPair& pair : pairs_) {
-    if (pair.pair < 0) continue;
-    pairs[pair.pair].first = static_cast<int>(memory_.size());
-    pairs[pair.pair].count = pair.count;
-    memory_.insert(memory_.end(), lively_.begin() + pair.first, lively_.begin() + pair.first + pair.count);
+  for (const LivelyPair& lively : pairs_) {
+    if (lively.pair < 0) continue;
+    BodyPair& pair = pairs[lively.pair];
+    pair.first = static_cast<int>(memory_.size());
+    pair.count = lively.count;
+    pair.margin = -1;
+    memory_.insert(memory_.end(), lively_.begin() + lively.first,
+                   lively_.begin() + lively.first + lively.count);
   }
 }
 

@@ -91,6 +91,10 @@ class NarrowPhase {
     bool bounces = false;
     bool pushes = false;  // moves, and nothing moves it
   };
+  /// Of the pairs begin to end: which are lively, and which of the others are due to be looked at anew ...
+  void sortPairs(BroadPhase& broad, std::size_t begin, std::size_t end, double slow, double dt);
+  /// ... and the calm ones' contacts, found or kept.
+  void takePairs(const Bodies& bodies, BroadPhase& broad, std::size_t begin, std::size_t end);
   static double relativeWay(const Seen& a, const Seen& b, double dt);
   /// Do the bodies of a pair move too much in a step for what was found at its start?
   static bool movesFast(const Seen& a, const Seen& b, double way, double slow, double dt);
@@ -112,10 +116,10 @@ class NarrowPhase {
   std::vector<Room> rooms_;
   std::vector<Seen> seen_;
   std::vector<int> stirred_;
-  std::vector<Motion> way_;                // of those that leave theirs
-  std::vector<char> livelyPair_;           // by index of the broad phase's pairs
-  std::vector<int> calmFirst_;             // by pair: range in calm_
-  std::vector<int> pairsFirst_, pairsAt_;  // by body: range in the list of the pairs that it is in
+  std::vector<Motion> way_;       // of those that leave theirs
+  std::vector<char> livelyPair_;  // by index of the broad phase's pairs
+  // By body: the range of the pairs in which it is the first one, and that in the list of where it is second.
+  std::vector<int> pairsOfFirst_, pairsOfSecond_, pairsAt_;
   bool pairsListed_ = false;
   PairContacts finder_;
   std::vector<int> due_;  // pairs whose contacts are to be found
