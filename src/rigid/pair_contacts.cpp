@@ -73,6 +73,25 @@ void PairContacts::prefetch(const Bodies& bodies, int body, bool soon) {
   }
 }
 
+namespace {
+double smallestGap(const Manifold& manifold) {
+  return std::min(manifold.points[0].gap, manifold.points[manifold.count - 1].gap);
+}
+
+/// Do the points of a manifold stay in front of its line for `time` seconds? Where they do not, though the
+/// two do not meet, one goes round the other's corner.
+bool staysAhead(const Bodies& bodies, const PairKey& key, const Frame& a, const Frame& b, double time,
+                const Manifold& manifold) {
+  for (int k = 0; k < manifold.count; ++k) {
+    const auto& [point, gap, feature] = manifold.points[k];
+    const Vec2 by =
+        bodies.velocityAt(key.b, point - b.position) - bodies.velocityAt(key.a, point - a.position);
+    if (gap + time * dot(manifold.normal, by) < 0) return false;
+  }
+  return true;
+}
+}  // namespace
+
 double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
                           bool swept, std::vector<Contact>& found, const Later& later) {
   auto ahead = [&](int body, const Motion& struck) -> Motion {
@@ -99,17 +118,22 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
     double share = 0;
     Frame ta = fa, tb = fb;
     if (swept) {
+      // All that may come to touch within the sub-step counts: what others do to the two changes their ways.
       const double target = kSweptTarget * thinner(bodies, key.a, key.b);
-      if (!collide(pa, fa, pb, fb, 2 * target, manifold)) {
+      const bool isNear = collide(pa, fa, pb, fb, margin, manifold);
+      if (!isNear || smallestGap(manifold) > 2 * target) {
         const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
         const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
         const auto hit = timeOfImpact(pa, sa, pb, sb, target);
         clear = 0;
-        if (!hit) return;
-        share = *hit;
-        ta = frameAt(sa, share);
-        tb = frameAt(sb, share);
-        if (!collide(pa, ta, pb, tb, 4 * target, manifold)) return;
+        if (hit) {
+          share = *hit;
+          ta = frameAt(sa, share);
+          tb = frameAt(sb, share);
+          if (!collide(pa, ta, pb, tb, margin, manifold)) return;
+        } else if (!isNear || !staysAhead(bodies, key, fa, fb, rest, manifold)) {
+          return;
+        }
       }
     } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
       clear = std::min(clear, manifold.apart);
