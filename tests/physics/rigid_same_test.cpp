@@ -100,8 +100,8 @@ TEST(RigidSame, TwoMirroredPolygonsStayMirrored) {
 
 TEST(RigidSame, FiveMirroredBodiesStayMirrored) {
   // Truth: a disk that runs into a stack of three boxes with a disk on top, at any moment within a step:
-  // alike to 1e-2 for a second, through two dozen impacts that each tell small differences apart (which edge of
-  // two that are nearly parallel gives the normal).
+  // alike to 1e-2 for a second, through two dozen impacts that each tell small differences apart (which edge
+  // of two that are nearly parallel gives the normal).
   for (const double from : {10.0, 10.03, 9.9, 10.35, 10.77}) {
     std::vector<BodyDef> defs, image;
     for (int k = 0; k < 3; ++k) defs.push_back(bodyAt(kBox, {16, 0.5 + k}));
