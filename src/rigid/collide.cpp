@@ -179,6 +179,7 @@ bool collide(const ConvexPiece& a, const Frame& fa, const ConvexPiece& b, const 
         inCone(q, closest.otherCorner, -inverseRotate(turn, normal))) {
       touchCorner(best, closest.onReference, closest.onOther, closest.apart,
                   featureOf(best, axis.edge, closest.otherCorner, false), manifold);
+      edgesBeside(best, closest.referenceCorner, closest.otherCorner, normal, margin, manifold);
       return true;
     }
   }

@@ -39,6 +39,36 @@ void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::
   setNormal(side, normal, manifold);
 }
 
+void edgesBeside(const Side& side, int referenceCorner, int otherCorner, Vec2 normal, double margin,
+                 Manifold& manifold) {
+  const ConvexPiece &p = side.reference, &q = side.other;
+  if (p.points.size() < 2 || q.points.size() < 2) return;
+  const Vec2 along = perpendicular(normal), from = p.points[referenceCorner];
+  const Vec2 above = toWorld(side.otherInReference, q.points[otherCorner]) - from;
+  double least = margin + p.radius + q.radius;
+  Vec2 best;
+  std::uint32_t feature = 0;
+  // Seen along the normal, the reference's outline goes on to the left, the other one's comes from there.
+  for (const bool left : {true, false}) {
+    const int edge = left ? referenceCorner : previous(p, referenceCorner),
+              facing = left ? previous(q, otherCorner) : otherCorner;
+    if (p.inner[edge] || q.inner[facing]) continue;
+    const int end = left ? next(p, referenceCorner) : edge, otherEnd = left ? facing : next(q, otherCorner);
+    const Vec2 own = p.points[end] - from, other = toWorld(side.otherInReference, q.points[otherEnd]) - from;
+    const double side1 = left ? 1 : -1, reach = side1 * dot(along, own), otherReach = side1 * dot(along, other);
+    if (!(reach > 0 && otherReach > 0)) continue;
+    const bool ownEnds = reach < otherReach;
+    const Vec2 on = ownEnds ? own : (otherReach / reach) * own,
+               over = ownEnds ? above + (reach / otherReach) * (other - above) : other;
+    const double apart = dot(normal, over - on);
+    if (apart > least) continue;
+    least = apart;
+    best = from + over;
+    feature = ownEnds ? featureOf(side, end, facing, true) : featureOf(side, edge, otherEnd, false);
+  }
+  if (feature != 0 || best.x != 0 || best.y != 0) addPoint(side, best, least, normal, feature, manifold);
+}
+
 void cornerOnFace(const Side& side, int k, int corner, Manifold& manifold) {
   const Vec2 normal = side.reference.normals[k];
   const Vec2 at = toWorld(side.otherInReference, side.other.points[corner]);

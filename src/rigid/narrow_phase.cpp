@@ -18,8 +18,9 @@ constexpr double kCalmTurn = 0.1;  // rad
 // ... and whether they bounce or not, while they move by less than what so many sub-steps of gravity make of
 // it: a bounce is hardly to be told from rest there.
 constexpr double kCalmSubSteps = 10;
-// A body may stray by this share of its width from the way expected of it.
-constexpr double kStray = 0.02;
+// A body may stray by this share of its width from the way expected of it, and by this share of that way; but
+// no farther than the last one.
+constexpr double kStray = 0.02, kStrayOnWay = 0.4, kStrayMost = 0.06;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
 constexpr double kReuse = 2e-3, kReuseFollowing = 8e-3;
 // ... or have turned by so much, rad, where the normal does not follow an edge: no stack leans on those of
@@ -59,8 +60,10 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const Motion& v = bodies.velocity[b];
     const bool moves = bodies.there[b] && bodies.moves(b);
     const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
-    const double room = moves ? fall + kStray * bodies.extent[b].thinnest : 0;
     const Extent& extent = bodies.extent[b];
+    const double stray = std::min(kStray * extent.thinnest + kStrayOnWay * dt * length(v.linear()),
+                                  kStrayMost * extent.thinnest);
+    const double room = moves ? fall + stray : 0;
     expected_[b].velocity = v;
     rooms_[b] = {room, 0, extent.turningReach};
     setLimit(b, moves ? room : kNoBound);

@@ -17,7 +17,7 @@ namespace smokebox {
 struct RigidSystem::State {
   static constexpr int kWalls = 4;  // the first bodies: left, right, bottom, top
   /// Of an overlap, in each sub-step; at this speed at most, m/s.
-  static constexpr double kSeparateShare = 0.2, kSeparateSpeed = 4;
+  static constexpr double kSeparateShare = 0.3, kSeparateSpeed = 4;
 
   State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads);
 
