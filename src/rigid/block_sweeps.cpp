@@ -21,6 +21,7 @@ constexpr double kRoughest = 1e6;  // a friction beyond all slip, and finite in 
 template <class Number>
 void BlockSweeps<Number>::clear() {
   blocks_.clear();
+  deep_.clear();
   colourEnds_.clear();
 }
 
@@ -30,6 +31,7 @@ void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>&
   colourEnds_ = layout.colourEnds();
   relaxed_ = relaxation > 1;
   back_ = true;
+  deep_.clear();
   blocks_.resize(layout.blocks());
   const std::vector<int>& inLane = layout.inLane();
   // Contacts of a block lie far apart: those of the next one are asked for ahead.
@@ -152,7 +154,7 @@ void BlockSweeps<Number>::separate(const Block& block, const MoveApart& apart, M
 
 /// Begins a sub-step: how fast each point may close; and who overlaps is moved apart.
 template <class Number>
-inline void BlockSweeps<Number>::begin(Block& block, Motion* moved, Number perSecond,
+inline Number BlockSweeps<Number>::begin(Block& block, Motion* moved, Number perSecond,
                                        const MoveApart& apart) {
   Relative<Vector> d;
   gather(moved, block.a, block.b, d);
@@ -165,7 +167,20 @@ inline void BlockSweeps<Number>::begin(Block& block, Motion* moved, Number perSe
     p.allowed = larger(gap, Vector{}) * wide(perSecond);
     block.total += p.impulseN;  // what the last sub-step came to
   }
-  if (smallestOf(deepest) < -static_cast<Number>(apart.slop)) separate(block, apart, moved, d);
+  const Number overlap = -smallestOf(deepest);
+  if (overlap > static_cast<Number>(apart.slop)) separate(block, apart, moved, d);
+  return overlap;
+}
+
+template <class Number>
+bool BlockSweeps<Number>::separateDeep(Bodies& bodies, const MoveApart& apart) {
+  Motion* moved = bodies.moved.data();
+  for (const int k : deep_) {
+    Relative<Vector> d;
+    gather(moved, blocks_[k].a, blocks_[k].b, d);
+    separate(blocks_[k], apart, moved, d);
+  }
+  return !deep_.empty();
 }
 
 // Two points at once: what each asks for by itself, less what the other one gives it. Where one lets go, the
@@ -288,12 +303,14 @@ double BlockSweeps<Number>::sweepFirst(Bodies& bodies, double h, const MoveApart
   Number result = 0;
   Block* some[kSome];
   back_ = !back_ && !relaxed_;
+  deep_.clear();
   eachColour(back_, [&](int k, int end) {
     while (k < end) {
       int count = 0;
       for (; count < kSome && k < end; ++k) {
         some[count++] = &blocks_[k];
-        begin(blocks_[k], bodies.moved.data(), perSecond, apart);
+        if (static_cast<double>(begin(blocks_[k], bodies.moved.data(), perSecond, apart)) > apart.deep)
+          deep_.push_back(k);
       }
       result = std::max(result, solveSome(some, count, Order::normalsFirst, bodies.velocity.data()));
     }

@@ -22,9 +22,10 @@
 
 namespace smokebox {
 
-/// Who overlaps by more than `slop` metres is moved apart by a share of that, at most `most` metres.
+/// Who overlaps by more than `slop` metres is moved apart by a share of that, at most `most` metres; several
+/// times in a sub-step where it is more than `deep`.
 struct MoveApart {
-  double slop, share, most;
+  double slop, share, most, deep;
 };
 
 template <class Number>
@@ -48,6 +49,9 @@ class BlockSweeps {
   /// leaves out those that it changes by less.
   void beginRough(double above);
   double sweepRough(Bodies& bodies, double above);
+  /// Once more over those that overlapped by more than `apart.deep` as the first sweep of this sub-step came by,
+  /// on places alone. False if there is none.
+  bool separateDeep(Bodies& bodies, const MoveApart& apart);
   /// The impulses at a place: the last ones, and their total.
   void read(int place, Contact& contact) const;
   /// Takes out what is at a place.
@@ -105,7 +109,8 @@ class BlockSweeps {
 
   static void fillBlock(Block& block, const Bodies& bodies, const std::vector<Contact>& contacts,
                         const int* which, Number relaxation);
-  static void begin(Block& block, Motion* moved, Number perSecond, const MoveApart& apart);
+  /// Gives the deepest overlap; 0: none.
+  static Number begin(Block& block, Motion* moved, Number perSecond, const MoveApart& apart);
   enum class Order { normalsFirst, frictionFirst };
   static void separate(const Block& block, const MoveApart& apart, Motion* moved, Relative<Vector>& d);
   template <int kPoints>
@@ -121,6 +126,7 @@ class BlockSweeps {
   std::vector<Block> blocks_;
   std::vector<int> colourEnds_;  // in blocks_
   std::vector<int> rough_;       // blocks
+  std::vector<int> deep_;        // blocks
   Number change_ = 0;            // of the last sweep
   bool back_ = false;            // the first sweep of this sub-step went from the last colour to the first
   bool relaxed_ = false;

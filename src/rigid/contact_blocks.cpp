@@ -46,6 +46,10 @@ double ContactBlocks::sweep(Bodies& bodies) {
   return inUse(*this, [&](auto& blocks) { return blocks.sweep(bodies); });
 }
 
+bool ContactBlocks::separateDeep(Bodies& bodies, const MoveApart& apart) {
+  return inUse(*this, [&](auto& blocks) { return blocks.separateDeep(bodies, apart); });
+}
+
 void ContactBlocks::beginRough(double above) {
   inUse(*this, [&](auto& blocks) { blocks.beginRough(above); });
 }

@@ -28,6 +28,7 @@ class ContactBlocks {
   /// A sweep, as in block_sweeps.h: the first of a sub-step, a further one, or over what is rough.
   double sweepFirst(Bodies& bodies, double h, const MoveApart& apart);
   double sweep(Bodies& bodies);
+  bool separateDeep(Bodies& bodies, const MoveApart& apart);
   void beginRough(double above);
   double sweepRough(Bodies& bodies, double above);
   /// Takes contact `index` out for the rest of the step; `contact` gets its impulses.

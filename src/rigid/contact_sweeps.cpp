@@ -163,40 +163,40 @@ double solve(Bodies& bodies, std::vector<SolvedContact>& contacts, double enough
   return largest;
 }
 
-void separate(Bodies& bodies, std::vector<SolvedContact>& contacts, double share, double most) {
-  for (SolvedContact& contact : contacts) {
-    for (int k = 0; k < contact.count; ++k) contact.total += contact.points[k].impulseN;
-    auto lacking = [&](const ContactPoint& p) {
-      const double gap = p.gap + gapMoved(bodies, contact, p);
-      return gap < 0 ? std::max(share * gap, -most) : gap;
+double separate(Bodies& bodies, const SolvedContact& contact, double share, double most) {
+  double deepest = 0;
+  auto lacking = [&](const ContactPoint& p) {
+    const double gap = p.gap + gapMoved(bodies, contact, p);
+    deepest = std::max(deepest, -gap);
+    return gap < 0 ? std::max(share * gap, -most) : gap;
+  };
+  auto push = [&](const ContactPoint& p, double impulse) {
+    auto shift = [&](int body, Vec2 arm, double sign) {
+      Motion& d = bodies.moved[body];
+      const InverseMass& m = bodies.inverse[body];
+      d.x += sign * m.mass * contact.normal.x * impulse;
+      d.y += sign * m.mass * contact.normal.y * impulse;
+      d.turn += sign * m.inertia * cross(arm, contact.normal) * impulse;
     };
-    auto push = [&](const ContactPoint& p, double impulse) {
-      auto shift = [&](int body, Vec2 arm, double sign) {
-        Motion& d = bodies.moved[body];
-        const InverseMass& m = bodies.inverse[body];
-        d.x += sign * m.mass * contact.normal.x * impulse;
-        d.y += sign * m.mass * contact.normal.y * impulse;
-        d.turn += sign * m.inertia * cross(arm, contact.normal) * impulse;
-      };
-      shift(contact.a, p.armA, -1);
-      shift(contact.b, p.armB, 1);
-    };
-    double lacks[2] = {0, 0};
-    for (int k = 0; k < contact.count; ++k) lacks[k] = lacking(contact.points[k]);
-    if (lacks[0] >= 0 && lacks[1] >= 0) continue;
-    if (areTwo(contact)) {
-      double impulse[2];
-      solveBoth(contact.response, lacks, impulse);
-      for (int k = 0; k < 2; ++k)
-        if (impulse[k] > 0) push(contact.points[k], impulse[k]);
-      continue;
-    }
-    for (int k = 0; k < contact.count; ++k) {
-      const ContactPoint& p = contact.points[k];
-      const double lack = lacking(p);
-      if (lack < 0) push(p, -contact.massN[k] * lack);
-    }
+    shift(contact.a, p.armA, -1);
+    shift(contact.b, p.armB, 1);
+  };
+  double lacks[2] = {0, 0};
+  for (int k = 0; k < contact.count; ++k) lacks[k] = lacking(contact.points[k]);
+  if (lacks[0] >= 0 && lacks[1] >= 0) return 0;
+  if (areTwo(contact)) {
+    double impulse[2];
+    solveBoth(contact.response, lacks, impulse);
+    for (int k = 0; k < 2; ++k)
+      if (impulse[k] > 0) push(contact.points[k], impulse[k]);
+    return deepest;
   }
+  for (int k = 0; k < contact.count; ++k) {
+    const ContactPoint& p = contact.points[k];
+    const double lack = lacking(p);
+    if (lack < 0) push(p, -contact.massN[k] * lack);
+  }
+  return deepest;
 }
 
 }  // namespace smokebox

@@ -29,6 +29,8 @@ void prepare(const Bodies& bodies, std::vector<SolvedContact>& contacts, double 
 double solve(Bodies& bodies, SolvedContact& contact);
 /// One sweep; contacts that parted faster than they need by more than `enough`, m/s, are left out.
 double solve(Bodies& bodies, std::vector<SolvedContact>& contacts, double enough);
-void separate(Bodies& bodies, std::vector<SolvedContact>& contacts, double share, double most);
+/// Moves what overlaps apart by a share of that, at most `most` metres, on places alone. Gives the deepest
+/// overlap before.
+double separate(Bodies& bodies, const SolvedContact& contact, double share, double most);
 
 }  // namespace smokebox

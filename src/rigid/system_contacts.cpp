@@ -1,6 +1,7 @@
 // The stage of a sub-step that makes velocities obey contacts, joints and springs.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -29,6 +30,11 @@ constexpr int kPlainSweeps = 3;
 // the bodies' width in a sub-step; a place: by this share of that.
 constexpr int kRoughSweeps = 8;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
+// Of an overlap, in each sub-step; at this speed at most, m/s.
+constexpr double kSeparateShare = 0.3, kSeparateSpeed = 4;
+// What overlaps by more than this share of the bodies' width is gone over so many more times.
+static const double kDeep = getenv("DEEP") ? atof(getenv("DEEP")) : 0.01;
+static const int kDeepRounds = getenv("DR") ? atoi(getenv("DR")) : 4;
 }  // namespace
 
 void RigidSystem::State::warmStartAll(double h) {
@@ -104,12 +110,32 @@ void RigidSystem::State::findCalmShare() {
   takeOut(narrow.lively());
 }
 
+MoveApart RigidSystem::State::moveApart(double h) const {
+  return {0.5 * h * h * length(gravity), kSeparateShare, kSeparateSpeed * h, kDeep * typicalWidth};
+}
+
+// In blocks those that overlap are moved apart as the first sweep comes by. Where a heap presses on a few,
+// that is not enough: each is pushed back by the next one.
+void RigidSystem::State::separateAll(double h) {
+  const MoveApart apart = moveApart(h);
+  deep.clear();
+  for (std::vector<SolvedContact>* contacts : {&spare, &narrow.lively()})
+    for (SolvedContact& contact : *contacts) {
+      for (int k = 0; k < contact.count; ++k) contact.total += contact.points[k].impulseN;
+      if (separate(bodies, contact, apart.share, apart.most) > apart.deep) deep.push_back(&contact);
+    }
+  for (int more = 0; more < kDeepRounds; ++more) {
+    const bool any = blocks.separateDeep(bodies, apart);
+    if (!any && deep.empty()) return;
+    for (SolvedContact* contact : deep) separate(bodies, *contact, apart.share, apart.most);
+  }
+}
+
 double RigidSystem::State::sweep(double h, bool first, double enough) {
   double change = 0;
   if (!joints.empty()) change = std::max(change, joints.solve(bodies, h));
   if (!springs.empty()) change = std::max(change, springs.solve(bodies, h));
-  const MoveApart apart{0.5 * h * h * length(gravity), kSeparateShare, kSeparateSpeed * h};
-  change = std::max(change, first ? blocks.sweepFirst(bodies, h, apart) : blocks.sweep(bodies));
+  change = std::max(change, first ? blocks.sweepFirst(bodies, h, moveApart(h)) : blocks.sweep(bodies));
   change = std::max(change, solve(bodies, spare, enough));
   change = std::max(change, solve(bodies, narrow.lively(), enough));
   return change;

@@ -16,8 +16,6 @@ namespace smokebox {
 
 struct RigidSystem::State {
   static constexpr int kWalls = 4;  // the first bodies: left, right, bottom, top
-  /// Of an overlap, in each sub-step; at this speed at most, m/s.
-  static constexpr double kSeparateShare = 0.3, kSeparateSpeed = 4;
 
   State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads);
 
@@ -38,6 +36,8 @@ struct RigidSystem::State {
   void setJoined(const JointDef& joint, bool on);
   double sweep(double h, bool first, double enough);
   void sweepRough(double h, double change);
+  MoveApart moveApart(double h) const;
+  void separateAll(double h);
   void findCalmShare();
   void findFlying(double h);
   void yieldTorn();
@@ -94,7 +94,7 @@ struct RigidSystem::State {
   std::vector<SolvedContact> spare;  // those
   std::vector<int> bouncing;         // calm contacts that may bounce
   std::vector<Contact*> bouncers;
-  std::vector<SolvedContact*> rough;
+  std::vector<SolvedContact*> rough, deep;
   ConjugateSweeps conjugate;
   Impacts impact;
   Press press;

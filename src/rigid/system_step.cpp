@@ -263,9 +263,7 @@ void RigidSystem::State::moveOn(double h) {
 
 void RigidSystem::State::move(double h) {
   moveOn(h);
-  const double most = kSeparateSpeed * h;
-  separate(bodies, spare, kSeparateShare, most);
-  separate(bodies, narrow.lively(), kSeparateShare, most);
+  separateAll(h);
   keepInside();
   for (const Contact& contact : narrow.lively()) collectTouch(contact);
   narrow.advance();
