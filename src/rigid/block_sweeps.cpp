@@ -155,7 +155,7 @@ void BlockSweeps<Number>::separate(const Block& block, const MoveApart& apart, M
 /// Begins a sub-step: how fast each point may close; and who overlaps is moved apart.
 template <class Number>
 inline Number BlockSweeps<Number>::begin(Block& block, Motion* moved, Number perSecond,
-                                       const MoveApart& apart) {
+                                         const MoveApart& apart) {
   Relative<Vector> d;
   gather(moved, block.a, block.b, d);
   const Vector along = block.nx * d.x + block.ny * d.y;

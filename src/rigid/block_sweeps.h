@@ -49,8 +49,8 @@ class BlockSweeps {
   /// leaves out those that it changes by less.
   void beginRough(double above);
   double sweepRough(Bodies& bodies, double above);
-  /// Once more over those that overlapped by more than `apart.deep` as the first sweep of this sub-step came by,
-  /// on places alone. False if there is none.
+  /// Once more over those that overlapped by more than `apart.deep` as the first sweep of this sub-step came
+  /// by, on places alone. False if there is none.
   bool separateDeep(Bodies& bodies, const MoveApart& apart);
   /// The impulses at a place: the last ones, and their total.
   void read(int place, Contact& contact) const;

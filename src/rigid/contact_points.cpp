@@ -39,34 +39,35 @@ void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::
   setNormal(side, normal, manifold);
 }
 
-void edgesBeside(const Side& side, int referenceCorner, int otherCorner, Vec2 normal, double margin,
+void edgesBeside(const Side& side, int corner, int otherCorner, Vec2 normal, double margin,
                  Manifold& manifold) {
   const ConvexPiece &p = side.reference, &q = side.other;
-  if (p.points.size() < 2 || q.points.size() < 2) return;
-  const Vec2 along = perpendicular(normal), from = p.points[referenceCorner];
-  const Vec2 above = toWorld(side.otherInReference, q.points[otherCorner]) - from;
-  double least = margin + p.radius + q.radius;
-  Vec2 best;
-  std::uint32_t feature = 0;
-  // Seen along the normal, the reference's outline goes on to the left, the other one's comes from there.
-  for (const bool left : {true, false}) {
-    const int edge = left ? referenceCorner : previous(p, referenceCorner),
-              facing = left ? previous(q, otherCorner) : otherCorner;
-    if (p.inner[edge] || q.inner[facing]) continue;
-    const int end = left ? next(p, referenceCorner) : edge, otherEnd = left ? facing : next(q, otherCorner);
-    const Vec2 own = p.points[end] - from, other = toWorld(side.otherInReference, q.points[otherEnd]) - from;
-    const double side1 = left ? 1 : -1, reach = side1 * dot(along, own), otherReach = side1 * dot(along, other);
+  const Vec2 left = perpendicular(normal), from = p.points[corner];
+  auto ofOther = [&](int k) { return toWorld(side.otherInReference, q.points[k]) - from; };
+  const Vec2 above = ofOther(otherCorner);
+  ManifoldPoint nearest;
+  nearest.gap = margin + p.radius + q.radius;
+  bool found = false;
+  // Seen along the normal, the reference's outline goes on to the left, and the other one's comes from there.
+  for (const bool isLeft : {true, false}) {
+    const int edge = isLeft ? corner : previous(p, corner),
+              otherEdge = isLeft ? previous(q, otherCorner) : otherCorner;
+    if (p.inner[edge] || q.inner[otherEdge]) continue;
+    const int end = isLeft ? next(p, corner) : edge, otherEnd = isLeft ? otherEdge : next(q, otherCorner);
+    const Vec2 along = isLeft ? left : -left, to = p.points[end] - from, otherTo = ofOther(otherEnd);
+    const double reach = dot(along, to), otherReach = dot(along, otherTo);
     if (!(reach > 0 && otherReach > 0)) continue;
-    const bool ownEnds = reach < otherReach;
-    const Vec2 on = ownEnds ? own : (otherReach / reach) * own,
-               over = ownEnds ? above + (reach / otherReach) * (other - above) : other;
-    const double apart = dot(normal, over - on);
-    if (apart > least) continue;
-    least = apart;
-    best = from + over;
-    feature = ownEnds ? featureOf(side, end, facing, true) : featureOf(side, edge, otherEnd, false);
+    // Where the shorter one ends.
+    const bool isOwn = reach < otherReach;
+    const Vec2 on = isOwn ? to : (otherReach / reach) * to,
+               over = isOwn ? above + (reach / otherReach) * (otherTo - above) : otherTo;
+    const double gap = dot(normal, over - on);
+    if (gap > nearest.gap) continue;
+    found = true;
+    nearest = {from + over, gap,
+               isOwn ? featureOf(side, end, otherEdge, true) : featureOf(side, edge, otherEnd, false)};
   }
-  if (feature != 0 || best.x != 0 || best.y != 0) addPoint(side, best, least, normal, feature, manifold);
+  if (found) addPoint(side, nearest.point, nearest.gap, normal, nearest.feature, manifold);
 }
 
 void cornerOnFace(const Side& side, int k, int corner, Manifold& manifold) {

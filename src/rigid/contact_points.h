@@ -31,9 +31,9 @@ void setNormal(const Side& side, Vec2 normal, Manifold& manifold);
 void touchCorner(const Side& side, Vec2 nearest, Vec2 point, double apart, std::uint32_t feature,
                  Manifold& manifold);
 
-/// A second point for two corners that are closest, along `normal` of that contact: the edges that run beside
-/// each other from there, where they are nearest to meeting if the bodies turn. Nothing beyond `margin`.
-void edgesBeside(const Side& side, int referenceCorner, int otherCorner, Vec2 normal, double margin,
+/// After touchCorner() of two corners: a second point, on the edges that run beside each other from there,
+/// where these are nearest to meeting if the bodies turn. None beyond `margin`.
+void edgesBeside(const Side& side, int corner, int otherCorner, Vec2 normal, double margin,
                  Manifold& manifold);
 
 /// One point: corner `corner` of the other against the line of edge `k` of the reference.

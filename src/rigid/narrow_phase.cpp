@@ -19,8 +19,8 @@ constexpr double kCalmTurn = 0.1;  // rad
 // it: a bounce is hardly to be told from rest there.
 constexpr double kCalmSubSteps = 10;
 // A body may stray by this share of its width from the way expected of it, and by this share of that way; but
-// no farther than the last one.
-constexpr double kStray = 0.02, kStrayOnWay = 0.4, kStrayMost = 0.06;
+// no farther than the last one, and turn by no more than so many radians: that its normals still hold.
+constexpr double kStray = 0.02, kStrayOnWay = 0.4, kStrayMost = 0.06, kStrayTurn = 0.05;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
 constexpr double kReuse = 2e-3, kReuseFollowing = 8e-3;
 // ... or have turned by so much, rad, where the normal does not follow an edge: no stack leans on those of
@@ -41,8 +41,10 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 // A third of the way for each axis.
 void NarrowPhase::setLimit(int body, double limit) {
   const double reach = rooms_[body].reach;
-  const double part = limit / 3, turn = reach > 0 ? part / reach : kNoBound;
+  const double mostTurn = limit < kNoBound ? kStrayTurn : kNoBound;
+  const double part = limit / 3, turn = std::min(reach > 0 ? part / reach : kNoBound, mostTurn);
   rooms_[body].limit = limit;
+  rooms_[body].turn = mostTurn;
   expected_[body].within = {part * part, part * part, turn * turn};
 }
 
@@ -65,7 +67,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
                                   kStrayMost * extent.thinnest);
     const double room = moves ? fall + stray : 0;
     expected_[b].velocity = v;
-    rooms_[b] = {room, 0, extent.turningReach};
+    rooms_[b] = {room, 0, 0, extent.turningReach};
     setLimit(b, moves ? room : kNoBound);
     const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
     Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
@@ -345,7 +347,7 @@ bool NarrowPhase::findLeaving(const Bodies& bodies, const std::vector<Motion>* s
     const Room& room = rooms_[b];
     const auto leaves = [&](Lanes by) {
       const double left = room.limit - std::abs(by[2]) * room.reach;
-      return left < 0 || by[0] * by[0] + by[1] * by[1] > left * left;
+      return left < 0 || std::abs(by[2]) > room.turn || by[0] * by[0] + by[1] * by[1] > left * left;
     };
     const Lanes by = on(b), now = off(b, by);
     const bool leavesNow = leaves(now);

@@ -74,6 +74,7 @@ class NarrowPhase {
   struct Room {
     double room = 0;   // how far its points may be from where that takes them, m
     double limit = 0;  // the same while its pairs are calm and may be stirred, else without bound
+    double turn = 0;   // the same for what it may turn from there, rad
     double reach = 0;  // how far a turn moves its points, m/rad
   };
   void setLimit(int body, double limit);

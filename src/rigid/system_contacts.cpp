@@ -1,7 +1,6 @@
 // The stage of a sub-step that makes velocities obey contacts, joints and springs.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -33,8 +32,8 @@ constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
 constexpr double kSeparateShare = 0.3, kSeparateSpeed = 4;
 // What overlaps by more than this share of the bodies' width is gone over so many more times.
-static const double kDeep = getenv("DEEP") ? atof(getenv("DEEP")) : 0.01;
-static const int kDeepRounds = getenv("DR") ? atoi(getenv("DR")) : 4;
+constexpr double kDeep = 0.01;
+constexpr int kDeepRounds = 4;
 }  // namespace
 
 void RigidSystem::State::warmStartAll(double h) {
@@ -111,23 +110,24 @@ void RigidSystem::State::findCalmShare() {
 }
 
 MoveApart RigidSystem::State::moveApart(double h) const {
-  return {0.5 * h * h * length(gravity), kSeparateShare, kSeparateSpeed * h, kDeep * typicalWidth};
+  const double slop = 0.5 * h * h * length(gravity);
+  return {slop, kSeparateShare, kSeparateSpeed * h, std::max(kDeep * typicalWidth, slop)};
 }
 
-// In blocks those that overlap are moved apart as the first sweep comes by. Where a heap presses on a few,
-// that is not enough: each is pushed back by the next one.
+// Those in blocks have been moved apart once as the first sweep came by. That is not enough where a heap
+// presses on a few: each is pushed back by the next one.
 void RigidSystem::State::separateAll(double h) {
   const MoveApart apart = moveApart(h);
-  deep.clear();
+  deepOnes.clear();
   for (std::vector<SolvedContact>* contacts : {&spare, &narrow.lively()})
     for (SolvedContact& contact : *contacts) {
       for (int k = 0; k < contact.count; ++k) contact.total += contact.points[k].impulseN;
-      if (separate(bodies, contact, apart.share, apart.most) > apart.deep) deep.push_back(&contact);
+      if (separate(bodies, contact, apart.share, apart.most) > apart.deep) deepOnes.push_back(&contact);
     }
   for (int more = 0; more < kDeepRounds; ++more) {
     const bool any = blocks.separateDeep(bodies, apart);
-    if (!any && deep.empty()) return;
-    for (SolvedContact* contact : deep) separate(bodies, *contact, apart.share, apart.most);
+    if (!any && deepOnes.empty()) return;
+    for (SolvedContact* contact : deepOnes) separate(bodies, *contact, apart.share, apart.most);
   }
 }
 

@@ -94,7 +94,7 @@ struct RigidSystem::State {
   std::vector<SolvedContact> spare;  // those
   std::vector<int> bouncing;         // calm contacts that may bounce
   std::vector<Contact*> bouncers;
-  std::vector<SolvedContact*> rough, deep;
+  std::vector<SolvedContact*> rough, deepOnes;
   ConjugateSweeps conjugate;
   Impacts impact;
   Press press;

@@ -77,6 +77,30 @@ TEST(RigidSwept, AThinPaddleLetsNothingThrough) {
   }
 }
 
+TEST(RigidSwept, WhatTurnsAboutItsCornerLandsOnItsEdge) {
+  // Truth: a box that hangs with one corner over another's, and turns about it, lands on the other one's face
+  // with its far end: nothing goes in, though only the two corners were close as the step began.
+  constexpr double kTilt = 0.04, kLean = 0.02, kApart = 0.01;
+  const Vec2 half{0.5, 0.2};
+  for (const double spin : {2.0, 3.0, 4.0, 5.0}) {
+    RigidWorld world;
+    world.add(solidAt(solidShape(BoxShape{2 * half}), Vec2{50, 50} - half));
+    const Vec2 corner = Vec2{50, 50} + kApart * Vec2{std::sin(kLean), std::cos(kLean)};
+    const Vec2 arm = rotate(turnBy(-kTilt), {half.x, -half.y});
+    BodyDef def = bodyAt(bodyShape(BoxShape{2 * half}), corner - arm);
+    def.angleRad = -kTilt;
+    def.spin = spin;
+    def.velocity = {spin * arm.y, -spin * arm.x};
+    const int body = world.add(def);
+    for (int step = 0; step < 4; ++step) {
+      world.steps(1);
+      const Turn turn = turnBy(world.system.angleRad(body));
+      for (const double x : {-half.x, half.x})
+        EXPECT_GT((world.at(body) + rotate(turn, {x, -half.y})).y, 50 - 1e-3) << "spin " << spin;
+    }
+  }
+}
+
 TEST(RigidSwept, WhatIsStruckWhileItFliesPastIsStoppedAtOnce) {
   // Truth: a block that skims a plate at 60 m/s, a millimetre above it, is struck from above at 20 m/s: it
   // slides on along the plate. By its way alone it would not have met that within the sub-step.

@@ -52,6 +52,31 @@ TEST(RigidCollide, EqualBoxesStackedFlushTouchAtTwoCorners) {
   }
 }
 
+TEST(RigidCollide, CornersThatAreClosestSeeTheEdgesBesideThem) {
+  // Two boxes corner over corner, 0.02 apart along a normal that leans by b, the upper one tilted by a: their
+  // edges open like a wedge to the left, to 0.02 + sin(a - b) + cos(a - b) tan(b) at the end of the upper
+  // one.
+  constexpr double a = 0.1, b = 0.04, apart = 0.02;
+  const double opening = apart + std::sin(a - b) + std::cos(a - b) * std::tan(b);
+  const Turn tilt = turnBy(-a);
+  const Vec2 corner = Vec2{0.5, 0.5} + apart * Vec2{std::sin(b), std::cos(b)};
+  const Frame lower{{0, 0}, {}}, upper{corner - rotate(tilt, {0.5, -0.5}), tilt};
+  for (const bool swapped : {false, true}) {
+    for (const double margin : {0.2, 0.11}) {
+      Manifold m;
+      ASSERT_TRUE(collide(box(1, 1), swapped ? upper : lower, box(1, 1), swapped ? lower : upper, margin, m));
+      EXPECT_NEAR((swapped ? -1 : 1) * m.normal.x, std::sin(b), 1e-13);
+      EXPECT_NEAR(m.points[0].gap, apart, 1e-13);
+      ASSERT_EQ(m.count, margin > opening ? 2 : 1);
+      if (m.count < 2) continue;
+      EXPECT_NEAR(m.points[1].gap, opening, 1e-13);
+      const Vec2 end = toWorld(upper, {-0.5, -0.5}) - 0.5 * opening * Vec2{std::sin(b), std::cos(b)};
+      EXPECT_NEAR(length(m.points[1].point - end), 0, 1e-13);
+      EXPECT_NE(m.points[0].feature, m.points[1].feature);
+    }
+  }
+}
+
 TEST(RigidCollide, RoundPiecesAreExact) {
   // Disks and capsules: gap and normal are those of their centres and middle lines.
   Manifold m;
