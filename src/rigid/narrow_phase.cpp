@@ -33,6 +33,8 @@ constexpr double kAhead = 4;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
+// A point that has moved by less than this share of the thinner one's width goes on where another one was.
+constexpr double kSamePlace = 0.1;
 constexpr std::size_t kTogether = 256;  // pairs
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
@@ -127,7 +129,8 @@ void NarrowPhase::takePairs(const Bodies& bodies, BroadPhase& broad, std::size_t
       if (clear <= pair.margin)
         clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, calm_, {});
       for (std::size_t c = first; c < calm_.size(); ++c)
-        inheritImpulses(memory_.data() + pair.first, pair.count, calm_[c]);
+        inheritImpulses(memory_.data() + pair.first, pair.count,
+                        kSamePlace * thinner(bodies, pair.key.a, pair.key.b), calm_[c]);
       pair.apart = clear >= pair.margin;
       pair.margin = std::max(pair.margin, clear);
     } else if (!livelyPair_[k]) {
@@ -309,7 +312,8 @@ void NarrowPhase::dropContacts(const LivelyPair& pair) {
 /// Puts what is in next_ into the place of a pair's contacts, or behind all others.
 void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
   const int count = static_cast<int>(next_.size());
-  for (Contact& contact : next_) inheritImpulses(lively_.data() + pair.first, pair.count, contact);
+  const double near = kSamePlace * thinner(bodies, pair.key.a, pair.key.b);
+  for (Contact& contact : next_) inheritImpulses(lively_.data() + pair.first, pair.count, near, contact);
   dropContacts(pair);
   if (count > pair.count) {
     pair.first = static_cast<int>(lively_.size());

@@ -11,6 +11,9 @@
 
 namespace smokebox {
 
+/// Cosine between the normals of two contacts of which one goes on where the other was.
+constexpr double kSameWay = 0.7;
+
 /// The smaller of two bodies' smallest widths, m.
 inline double thinner(const Bodies& bodies, int a, int b) {
   return std::min(bodies.extent[a].thinnest, bodies.extent[b].thinnest);
@@ -31,19 +34,34 @@ void setSurfaces(const Bodies& bodies, Contact& contact);
 /// much since.
 void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contact& contact);
 
-/// Gives a contact the impulses of the one of `old` that is between the same pieces, point by point.
+/// Gives a contact the impulses of the one of `old` that is between the same pieces: point by point where the
+/// same edge and corner meet, else to a point no farther than `near` metres from where it was. What lies on a
+/// corner changes edges, and must not lose its hold on what it bears.
 template <class Old>
-void inheritImpulses(const Old* old, int count, Contact& contact) {
+void inheritImpulses(const Old* old, int count, double near, Contact& contact) {
+  auto pass = [](const ContactPoint& from, ContactPoint& to) {
+    to.impulseN = from.impulseN;
+    to.impulseT = from.impulseT;
+  };
   for (int o = 0; o < count; ++o) {
     const Contact& before = old[o];
     if (before.pieceA != contact.pieceA || before.pieceB != contact.pieceB) continue;
     contact.approach = std::max(contact.approach, before.approach);
+    bool given[2] = {false, false}, taken[2] = {false, false};
     for (int k = 0; k < contact.count; ++k)
       for (int l = 0; l < before.count; ++l)
         if (before.points[l].feature == contact.points[k].feature) {
-          contact.points[k].impulseN = before.points[l].impulseN;
-          contact.points[k].impulseT = before.points[l].impulseT;
+          pass(before.points[l], contact.points[k]);
+          given[l] = taken[k] = true;
         }
+    if (dot(before.normal, contact.normal) < kSameWay) continue;
+    for (int k = 0; k < contact.count; ++k)
+      for (int l = 0; l < before.count && !taken[k]; ++l) {
+        const Vec2 apart = contact.points[k].armA - before.points[l].armA;
+        if (given[l] || dot(apart, apart) > near * near) continue;
+        pass(before.points[l], contact.points[k]);
+        given[l] = taken[k] = true;
+      }
   }
 }
 

@@ -31,8 +31,9 @@ constexpr int kRoughSweeps = 8;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
 constexpr double kSeparateShare = 0.3, kSeparateSpeed = 4;
-// What overlaps by more than this share of the bodies' width is gone over so many more times.
-constexpr double kDeep = 0.01;
+// What overlaps by more than this share of the bodies' width is gone over so many more times, each at this
+// share of the speed: gently all the same.
+constexpr double kDeep = 0.01, kDeepSpeed = 0.125;
 constexpr int kDeepRounds = 4;
 }  // namespace
 
@@ -117,13 +118,14 @@ MoveApart RigidSystem::State::moveApart(double h) const {
 // Those in blocks have been moved apart once as the first sweep came by. That is not enough where a heap
 // presses on a few: each is pushed back by the next one.
 void RigidSystem::State::separateAll(double h) {
-  const MoveApart apart = moveApart(h);
+  MoveApart apart = moveApart(h);
   deepOnes.clear();
   for (std::vector<SolvedContact>* contacts : {&spare, &narrow.lively()})
     for (SolvedContact& contact : *contacts) {
       for (int k = 0; k < contact.count; ++k) contact.total += contact.points[k].impulseN;
       if (separate(bodies, contact, apart.share, apart.most) > apart.deep) deepOnes.push_back(&contact);
     }
+  apart.most *= kDeepSpeed;
   for (int more = 0; more < kDeepRounds; ++more) {
     const bool any = blocks.separateDeep(bodies, apart);
     if (!any && deepOnes.empty()) return;

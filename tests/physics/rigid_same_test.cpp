@@ -99,10 +99,13 @@ TEST(RigidSame, TwoMirroredPolygonsStayMirrored) {
 }
 
 TEST(RigidSame, FiveMirroredBodiesStayMirrored) {
-  // Truth: a disk that runs into a stack of three boxes with a disk on top, at any moment within a step:
-  // alike to 1e-2 for a second, through two dozen impacts that each tell small differences apart (which edge
-  // of two that are nearly parallel gives the normal).
-  for (const double from : {10.0, 10.03, 9.9, 10.35, 10.77}) {
+  // Truth: a disk that runs into a stack of three boxes with a disk on top, at any moment within a step, and
+  // its mirror image: alike to 1e-3 for a second. Two dozen impacts each tell small differences apart (which
+  // edge of two that are nearly parallel gives the normal): in one of ten a rounding may grow beyond that.
+  constexpr int kStarts = 50;
+  int apart = 0;
+  for (int start = 0; start < kStarts; ++start) {
+    const double from = 9.5 + 0.0307 * start;
     std::vector<BodyDef> defs, image;
     for (int k = 0; k < 3; ++k) defs.push_back(bodyAt(kBox, {16, 0.5 + k}));
     defs.push_back(bodyAt(kDisk, {16.125, 3.5}));
@@ -110,8 +113,9 @@ TEST(RigidSame, FiveMirroredBodiesStayMirrored) {
     defs[4].velocity = {8, 2};
     for (BodyDef& def : defs) def.friction = 0.5, def.bounce = 0.25;
     for (const BodyDef& def : defs) image.push_back(mirror(def));
-    EXPECT_LT(unlike(defs, image, 60, 0, 0.5), 1e-2) << from;
+    apart += unlike(defs, image, 60, 0, 0.5) > 1e-3 ? 1 : 0;
   }
+  EXPECT_LE(apart, kStarts / 10);
 }
 
 }  // namespace
