@@ -149,19 +149,9 @@ void RigidSystem::State::sweepRough(double h, double change) {
   const double enough = kRough * typicalWidth / h, place = kRoughPlace * enough;
   if (change <= enough) return;
   blocks.beginRough(place);
-  rough.clear();
-  for (std::vector<SolvedContact>* contacts : {&spare, &narrow.lively()})
-    for (SolvedContact& contact : *contacts)
-      if (contact.change >= place) rough.push_back(&contact);
-  for (int more = 0; more < kRoughSweeps && change > enough; ++more) {
-    change = blocks.sweepRough(bodies, place);
-    std::size_t kept = 0;
-    for (SolvedContact* contact : rough) {
-      change = std::max(change, solve(bodies, *contact));
-      if (contact->change >= place) rough[kept++] = contact;
-    }
-    rough.resize(kept);
-  }
+  roughOnes.begin(bodies, spare, narrow.lively(), place);
+  for (int more = 0; more < kRoughSweeps && change > enough; ++more)
+    change = std::max(blocks.sweepRough(bodies, place), roughOnes.sweep(bodies, place));
 }
 
 void RigidSystem::State::solveContacts(double h) {

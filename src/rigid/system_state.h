@@ -10,6 +10,7 @@
 #include "rigid/joint_set.h"
 #include "rigid/narrow_phase.h"
 #include "rigid/press.h"
+#include "rigid/rough_contacts.h"
 #include "rigid/spring_set.h"
 
 namespace smokebox {
@@ -94,7 +95,8 @@ struct RigidSystem::State {
   std::vector<SolvedContact> spare;  // those
   std::vector<int> bouncing;         // calm contacts that may bounce
   std::vector<Contact*> bouncers;
-  std::vector<SolvedContact*> rough, deepOnes;
+  std::vector<SolvedContact*> deepOnes;
+  RoughContacts roughOnes;
   ConjugateSweeps conjugate;
   Impacts impact;
   Press press;
