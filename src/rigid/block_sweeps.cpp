@@ -29,7 +29,7 @@ template <class Number>
 void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>& contacts,
                                const ContactLayout& layout, Number relaxation) {
   colourEnds_ = layout.colourEnds();
-  relaxed_ = relaxation > 1;
+  relaxation_ = relaxation;
   back_ = true;
   deep_.clear();
   blocks_.resize(layout.blocks());
@@ -174,11 +174,12 @@ inline Number BlockSweeps<Number>::begin(Block& block, Motion* moved, Number per
 
 template <class Number>
 bool BlockSweeps<Number>::separateDeep(Bodies& bodies, const MoveApart& apart) {
+  const MoveApart own = unrelaxed(apart);
   Motion* moved = bodies.moved.data();
   for (const int k : deep_) {
     Relative<Vector> d;
     gather(moved, blocks_[k].a, blocks_[k].b, d);
-    separate(blocks_[k], apart, moved, d);
+    separate(blocks_[k], own, moved, d);
   }
   return !deep_.empty();
 }
@@ -302,14 +303,15 @@ double BlockSweeps<Number>::sweepFirst(Bodies& bodies, double h, const MoveApart
   const Number perSecond = static_cast<Number>(1 / h);
   Number result = 0;
   Block* some[kSome];
-  back_ = !back_ && !relaxed_;
+  const MoveApart own = unrelaxed(apart);
+  back_ = !back_ && !(relaxation_ > 1);
   deep_.clear();
   eachColour(back_, [&](int k, int end) {
     while (k < end) {
       int count = 0;
       for (; count < kSome && k < end; ++k) {
         some[count++] = &blocks_[k];
-        if (static_cast<double>(begin(blocks_[k], bodies.moved.data(), perSecond, apart)) > apart.deep)
+        if (static_cast<double>(begin(blocks_[k], bodies.moved.data(), perSecond, own)) > apart.deep)
           deep_.push_back(k);
       }
       result = std::max(result, solveSome(some, count, Order::normalsFirst, bodies.velocity.data()));

@@ -119,6 +119,10 @@ class BlockSweeps {
   template <int kPoints>
   static Pushes solve(Block& block, Relative<Vector> v, Order order);
   static Number solveSome(Block* const* some, int count, Order order, Motion* velocity);
+  /// With a share for effective masses that hold the relaxation.
+  MoveApart unrelaxed(const MoveApart& apart) const {
+    return {apart.slop, apart.share / static_cast<double>(relaxation_), apart.most, apart.deep};
+  }
   /// todo(begin, end) for the blocks of each colour, from the first to the last one or back.
   template <class Todo>
   void eachColour(bool back, Todo&& todo) const;
@@ -129,7 +133,7 @@ class BlockSweeps {
   std::vector<int> deep_;        // blocks
   Number change_ = 0;            // of the last sweep
   bool back_ = false;            // the first sweep of this sub-step went from the last colour to the first
-  bool relaxed_ = false;
+  Number relaxation_ = 1;
 };
 
 }  // namespace smokebox

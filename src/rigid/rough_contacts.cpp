@@ -52,7 +52,6 @@ void RoughContacts::gather() {
     }
   }
   hot_.clear();
-  std::sort(rough_.begin(), rough_.end());
   for (const int contact : rough_) isListed_[contact] = 0;
 }
 

@@ -25,16 +25,16 @@ constexpr long kFewPoints = 160;
 constexpr double kSpare = 4;
 // So many sweeps are made before the further ones are drawn along a conjugate direction.
 constexpr int kPlainSweeps = 3;
-// Beyond these sweeps there are so many more over those places alone where velocities change by this share of
-// the bodies' width in a sub-step; a place: by this share of that.
-constexpr int kRoughSweeps = 8;
+// Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
+// in a sub-step; over those places alone where they change by this share of that.
+constexpr int kRoughSweeps = 16;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
-constexpr double kSeparateShare = 0.3, kSeparateSpeed = 4;
+constexpr double kSeparateShare = 0.25, kSeparateSpeed = 4;
 // What overlaps by more than this share of the bodies' width is gone over so many more times, each at this
 // share of the speed: gently all the same.
 constexpr double kDeep = 0.01, kDeepSpeed = 0.125;
-constexpr int kDeepRounds = 4;
+constexpr int kDeepRounds = 3;
 }  // namespace
 
 void RigidSystem::State::warmStartAll(double h) {
