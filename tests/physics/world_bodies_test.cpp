@@ -225,7 +225,7 @@ TEST(WorldBodies, ThoseThatAJointJoinsPassThroughEachOther) {
   }
   EXPECT_EQ(most, 0);
   EXPECT_NEAR(world.figures().energyBodies, before, 1e-3 * before);
-  run(world, 1.95);
+  run(world, 1.93);
   EXPECT_GT(world.figures().contacts, 0);
   run(world, 4);
   EXPECT_LT(world.figures().overlap, 1e-3);
