@@ -18,6 +18,8 @@ class Press {
   /// A contact of that step.
   void add(const Bodies& bodies, const Contact& contact);
   void end(const Bodies& bodies);
+  /// Did solids press something in the last step?
+  bool isOn() const { return !most_.empty(); }
   /// Slows down what has become too fast.
   void yield(Bodies& bodies) const;
 

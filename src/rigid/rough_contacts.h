@@ -16,6 +16,9 @@ class RoughContacts {
              double above);
   /// A sweep over them; then those at bodies where it has changed so much. Gives the largest change, m/s.
   double sweep(Bodies& bodies, double above);
+  /// How many the next sweep goes over, and how many there are.
+  long size() const { return static_cast<long>(rough_.size()); }
+  long all() const { return static_cast<long>(contacts_.size()); }
 
  private:
   void link(const Bodies& bodies, SolvedContact& contact);

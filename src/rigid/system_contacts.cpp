@@ -28,6 +28,8 @@ constexpr int kPlainSweeps = 3;
 // Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
 // in a sub-step; over those places alone where they change by this share of that.
 constexpr int kRoughSweeps = 16;
+// In a press they go over so many times as many contacts one by one as there are, at most.
+constexpr long kRoughTimes = 2;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
 constexpr double kSeparateShare = 0.25, kSeparateSpeed = 4;
@@ -150,8 +152,12 @@ void RigidSystem::State::sweepRough(double h, double change) {
   if (change <= enough) return;
   blocks.beginRough(place);
   roughOnes.begin(bodies, spare, narrow.lively(), place);
-  for (int more = 0; more < kRoughSweeps && change > enough; ++more)
+  // In a press all is rough, and no time is enough.
+  long left = press.isOn() ? kRoughTimes * roughOnes.all() : std::numeric_limits<long>::max();
+  for (int more = 0; more < kRoughSweeps && change > enough && left > 0; ++more) {
+    left -= roughOnes.size();
     change = std::max(blocks.sweepRough(bodies, place), roughOnes.sweep(bodies, place));
+  }
 }
 
 void RigidSystem::State::solveContacts(double h) {
