@@ -49,6 +49,8 @@ class BlockSweeps {
   /// leaves out those that it changes by less.
   void beginRough(double above);
   double sweepRough(Bodies& bodies, double above);
+  /// Contacts that the next one goes over, at most.
+  long roughSize() const { return kLanes * static_cast<long>(rough_.size()); }
   /// Once more over those that overlapped by more than `apart.deep` as the first sweep of this sub-step came
   /// by, on places alone. False if there is none.
   bool separateDeep(Bodies& bodies, const MoveApart& apart);

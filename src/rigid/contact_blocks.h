@@ -31,6 +31,7 @@ class ContactBlocks {
   bool separateDeep(Bodies& bodies, const MoveApart& apart);
   void beginRough(double above);
   double sweepRough(Bodies& bodies, double above);
+  long roughSize() const { return isBrief_ ? brief_.roughSize() : exact_.roughSize(); }
   /// Takes contact `index` out for the rest of the step; `contact` gets its impulses.
   void drop(int index, Contact& contact);
   /// Copies the impulses of contact `index` back, the last ones and their total; one that was dropped keeps

@@ -21,11 +21,15 @@ constexpr double kCalmSubSteps = 10;
 // A body may stray by this share of its width from the way expected of it, and by this share of that way; but
 // no farther than the last one, and turn by no more than so many radians: that its normals still hold.
 constexpr double kStray = 0.02, kStrayOnWay = 0.4, kStrayMost = 0.06, kStrayTurn = 0.05;
+// What is sunk may stray by so much of its depth more: the normals of deep overlaps are good for that.
+constexpr double kStraySunk = 0.5, kStrayTurnSunk = 0.3;
 // Contacts are found anew once the bodies have moved by this share of the thinner one's width.
 constexpr double kReuse = 2e-3, kReuseFollowing = 8e-3;
 // ... or have turned by so much, rad, where the normal does not follow an edge: no stack leans on those of
 // before.
 constexpr double kReuseTurn = 1e-5;
+// ... or, where both are sunk, by this share of what they may stray for that.
+constexpr double kReuseSunk = 0.5;
 // Lively ones, after this share: less where they bounce.
 constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 // A lively pair that is this many sub-steps apart is left alone for as long.
@@ -41,16 +45,16 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 }  // namespace
 
 // A third of the way for each axis.
-void NarrowPhase::setLimit(int body, double limit) {
+void NarrowPhase::setLimit(int body, double limit, double mostTurn) {
   const double reach = rooms_[body].reach;
-  const double mostTurn = limit < kNoBound ? kStrayTurn : kNoBound;
   const double part = limit / 3, turn = std::min(reach > 0 ? part / reach : kNoBound, mostTurn);
   rooms_[body].limit = limit;
   rooms_[body].turn = mostTurn;
   expected_[body].within = {part * part, part * part, turn * turn};
 }
 
-void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps) {
+void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, const Press& press, Vec2 gravity,
+                            double dt, int subSteps) {
   const int count = bodies.count();
   h_ = dt / subSteps;
   elapsed_ = 0;
@@ -67,10 +71,14 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     const Extent& extent = bodies.extent[b];
     const double stray = std::min(kStray * extent.thinnest + kStrayOnWay * dt * length(v.linear()),
                                   kStrayMost * extent.thinnest);
-    const double room = moves ? fall + stray : 0;
+    const double sunk = moves ? kStraySunk * press.sunk(b) : 0;
+    const double room = moves ? fall + stray + sunk : 0;
     expected_[b].velocity = v;
     rooms_[b] = {room, 0, 0, extent.turningReach};
-    setLimit(b, moves ? room : kNoBound);
+    if (moves)
+      setLimit(b, room, sunk > 0 ? kStrayTurnSunk : kStrayTurn);
+    else
+      setLimit(b, kNoBound, kNoBound);
     const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
     Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
     seen.position = bodies.position[b];
@@ -80,6 +88,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravit
     seen.thinnest = extent.thinnest;
     seen.turningReach = extent.turningReach;
     seen.room = room;
+    seen.sunk = sunk;
     seen.bounces = bodies.surface[b].bounce > 0;
     seen.pushes = isMoving && !bodies.moves(b);
   }
@@ -153,6 +162,8 @@ double NarrowPhase::relativeWay(const Seen& a, const Seen& b, double dt) {
 
 bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double way, double slow, double dt) {
   const double thin = std::min(a.thinnest, b.thinnest);
+  const double sunk = std::min(a.sunk, b.sunk);
+  if (sunk > 0) return way > kCalm * thin + sunk;
   const bool bounces = a.bounces || b.bounces;
   const double turn = std::max(std::abs(a.turn), std::abs(b.turn)) * dt;
   return ((a.pushes || b.pushes) && way > kReuse * thin) ||
@@ -170,10 +181,11 @@ bool NarrowPhase::mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shi
     const auto begin = memory_.begin() + pair.first;
     return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
   };
+  const double sunk = kReuseSunk * std::min(a.sunk, b.sunk);
   const bool same = (since <= kReuse * thin && std::max(turnedA, turnedB) <= kReuseTurn) ||
-                    (since <= kReuseFollowing * thin && follows());
+                    (since <= kReuseFollowing * thin && follows()) || since <= sunk;
   if ((pair.apart || same) && margin + since <= pair.margin) return true;
-  pair.margin = margin + 2 * kReuseFollowing * thin;
+  pair.margin = margin + 2 * kReuseFollowing * thin + sunk;
   pair.between = between;
   pair.angleA = a.angleRad;
   pair.angleB = b.angleRad;
@@ -229,7 +241,8 @@ bool NarrowPhase::isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, doub
     return false;
   }
   const bool bounces = bodies.surface[a].bounce > 0 || bodies.surface[b].bounce > 0;
-  pair.reuse = (bounces ? kReuseBouncing : kReuseLively) * thin;
+  pair.reuse =
+      (bounces ? kReuseBouncing : kReuseLively) * thin + kReuseSunk * std::min(seen_[a].sunk, seen_[b].sunk);
   pair.near = pair.swept ? way : way + kNear * thin + pair.reuse;
   const double clear = clearance(bodies, pair.key, shift, kAhead * pair.near);
   if (clear <= pair.near) return true;
@@ -382,7 +395,7 @@ NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Moti
   now |= findLeaving(bodies, struck, timeLeft);
   for (const int b : leaving_) {
     expected_[b].velocity = bodies.velocity[b];
-    setLimit(b, kNoBound);
+    setLimit(b, kNoBound, kNoBound);
     stirred_.push_back(b);
   }
   if (leaving_.empty() && turned_.empty()) return Stir::none;

@@ -12,13 +12,15 @@
 #include "rigid/contact_blocks.h"
 #include "rigid/pair_contacts.h"
 #include "rigid/passing.h"
+#include "rigid/press.h"
 
 namespace smokebox {
 
 class NarrowPhase {
  public:
   /// Sorts the pairs into calm and lively, and finds the calm contacts for a step of `dt`.
-  void beginStep(const Bodies& bodies, BroadPhase& broad, Vec2 gravity, double dt, int subSteps);
+  void beginStep(const Bodies& bodies, BroadPhase& broad, const Press& press, Vec2 gravity, double dt,
+                 int subSteps);
   /// Finds the lively contacts for the coming sub-step, with the impulses of the last one; `since`: by body,
   /// the moment within it from which its way is straight (null: its start).
   void refresh(const Bodies& bodies, const BroadPhase& broad, double h, const std::vector<double>* since);
@@ -77,7 +79,7 @@ class NarrowPhase {
     double turn = 0;   // the same for what it may turn from there, rad
     double reach = 0;  // how far a turn moves its points, m/rad
   };
-  void setLimit(int body, double limit);
+  void setLimit(int body, double limit, double mostTurn);
   /// Puts into leaving_ who leaves in this sub-step or in the next one; does any in this one?
   bool findLeaving(const Bodies& bodies, const std::vector<Motion>* struck, double timeLeft);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
@@ -89,6 +91,7 @@ class NarrowPhase {
     double turn = 0, angleRad = 0;
     double thinnest = 0, turningReach = 0;
     double room = 0;  // as Room's
+    double sunk = 0;  // the part of it that is for what it lies in, m
     bool bounces = false;
     bool pushes = false;  // moves, and nothing moves it
   };
@@ -128,6 +131,7 @@ class NarrowPhase {
   Passing passing_;
   std::vector<int> leaving_, turned_, crushed_;
   std::vector<double> crushSpeed_;  // by crushed body
+  std::vector<int> crushedAt_;      // in crushed_, by body; -1: it is not
   double elapsed_ = 0, h_ = 0;
 };
 

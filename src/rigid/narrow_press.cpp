@@ -25,14 +25,15 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
     }
     return false;
   };
+  crushedAt_.assign(bodies.count(), -1);
   for (const SolvedContact& c : lively_)
-    if (isCrushed(c)) {
-      if (bodies.moves(c.a)) crushed_.push_back(c.a);
-      if (bodies.moves(c.b)) crushed_.push_back(c.b);
-    }
+    if (isCrushed(c))
+      for (const int body : {c.a, c.b})
+        if (bodies.moves(body) && crushedAt_[body] < 0) {
+          crushedAt_[body] = static_cast<int>(crushed_.size());
+          crushed_.push_back(body);
+        }
   if (crushed_.empty()) return;
-  std::sort(crushed_.begin(), crushed_.end());
-  crushed_.erase(std::unique(crushed_.begin(), crushed_.end()), crushed_.end());
   auto speed = [&](int body) {
     const Motion& v = before[body];
     return length(v.linear()) + std::abs(v.turn) * bodies.extent[body].turningReach;
@@ -40,12 +41,8 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
   // Nothing that gives way can make it faster than the fastest of those around it.
   crushSpeed_.resize(crushed_.size());
   for (std::size_t k = 0; k < crushed_.size(); ++k) crushSpeed_[k] = speed(crushed_[k]);
-  auto place = [&](int body) {
-    const auto at = std::lower_bound(crushed_.begin(), crushed_.end(), body);
-    return at != crushed_.end() && *at == body ? static_cast<int>(at - crushed_.begin()) : -1;
-  };
   for (SolvedContact& c : lively_) {
-    const int a = place(c.a), b = place(c.b);
+    const int a = crushedAt_[c.a], b = crushedAt_[c.b];
     if (a >= 0) crushSpeed_[a] = std::max(crushSpeed_[a], speed(c.b));
     if (b >= 0) crushSpeed_[b] = std::max(crushSpeed_[b], speed(c.a));
   }
@@ -65,7 +62,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
   }
   if (!any) return;
   for (SolvedContact& c : lively_) {
-    const int a = place(c.a), b = place(c.b);
+    const int a = crushedAt_[c.a], b = crushedAt_[c.b];
     if ((a >= 0 && crushSpeed_[a] < 0) || (b >= 0 && crushSpeed_[b] < 0))
       for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;
   }

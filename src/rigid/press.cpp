@@ -13,6 +13,8 @@ constexpr int kWalls = 4;  // the first bodies, which never come nearer
 constexpr double kOfSolid = 4;
 // ... or at so much more than the fastest body there was; the second in m/s.
 constexpr double kOfBodies = 1.25, kMore = 2;
+// Sunk is what overlaps by more than this share of the thinner one's width.
+constexpr double kSunk = 0.1;
 
 double speedOf(const Bodies& bodies, int body) {
   const Motion& v = bodies.velocity[body];
@@ -26,18 +28,23 @@ int Press::rootOf(int body) {
 }
 
 bool Press::begin(const Bodies& bodies) {
+  isOn_ = false;
   most_.clear();
-  bool any = false;
+  bool any = !sunk_.empty();
   for (int b = kWalls; b < bodies.count() && !any; ++b)
     any = bodies.there[b] && !bodies.moves(b) && speedOf(bodies, b) > 0;
   if (!any) return false;
   parent_.resize(bodies.count());
   std::iota(parent_.begin(), parent_.end(), 0);
   rests_.clear();
+  deep_.assign(bodies.count(), 0);
   return true;
 }
 
-void Press::add(const Bodies& bodies, const Contact& contact) {
+void Press::add(const Bodies& bodies, const Contact& contact, double overlap) {
+  if (overlap > kSunk * std::min(bodies.extent[contact.a].thinnest, bodies.extent[contact.b].thinnest))
+    for (const int body : {contact.a, contact.b})
+      deep_[body] = std::max(deep_[body], std::min(overlap, bodies.extent[body].thinnest));
   bool presses = false;
   for (int k = 0; k < contact.count; ++k) presses |= contact.points[k].impulseN > 0;
   if (!presses) return;
@@ -70,9 +77,19 @@ void Press::end(const Bodies& bodies) {
   most_.assign(bodies.count(), std::numeric_limits<double>::infinity());
   for (int b = kWalls; b < bodies.count(); ++b) {
     const int root = bodies.moves(b) ? rootOf(b) : -1;
-    if (root >= 0 && solid_[root] == -2 && driven_[root] > 0)
-      most_[b] = std::max(kOfSolid * driven_[root], kOfBodies * fastest_[root] + kMore);
+    if (root < 0 || solid_[root] != -2 || driven_[root] <= 0) continue;
+    most_[b] = std::max(kOfSolid * driven_[root], kOfBodies * fastest_[root] + kMore);
+    isOn_ = true;
   }
+  bool any = false;
+  for (int b = 0; b < bodies.count(); ++b) {
+    const bool pressed = most_[b] < std::numeric_limits<double>::infinity();
+    if (!pressed && sunk(b) == 0) deep_[b] = 0;
+    any |= deep_[b] > 0;
+  }
+  sunk_.swap(deep_);
+  if (!any) sunk_.clear();
+  isOn_ |= any;
 }
 
 void Press::yield(Bodies& bodies) const {

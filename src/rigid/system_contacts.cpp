@@ -28,7 +28,7 @@ constexpr int kPlainSweeps = 3;
 // Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
 // in a sub-step; over those places alone where they change by this share of that.
 constexpr int kRoughSweeps = 16;
-// In a press they go over so many times as many contacts one by one as there are, at most.
+// In a press they go over so many times as many contacts as there are, at most.
 constexpr long kRoughTimes = 2;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
@@ -153,9 +153,10 @@ void RigidSystem::State::sweepRough(double h, double change) {
   blocks.beginRough(place);
   roughOnes.begin(bodies, spare, narrow.lively(), place);
   // In a press all is rough, and no time is enough.
-  long left = press.isOn() ? kRoughTimes * roughOnes.all() : std::numeric_limits<long>::max();
+  const long all = roughOnes.all() + static_cast<long>(narrow.calm().size());
+  long left = press.isOn() ? kRoughTimes * all : std::numeric_limits<long>::max();
   for (int more = 0; more < kRoughSweeps && change > enough && left > 0; ++more) {
-    left -= roughOnes.size();
+    left -= roughOnes.size() + blocks.roughSize();
     change = std::max(blocks.sweepRough(bodies, place), roughOnes.sweep(bodies, place));
   }
 }

@@ -140,7 +140,7 @@ void RigidSystem::State::beginStep(double step) {
   touches.clear();
   calmTouches = 0;
   broad.update(bodies, gravity, dt);
-  narrow.beginStep(bodies, broad, gravity, dt, method.subSteps);
+  narrow.beginStep(bodies, broad, press, gravity, dt, method.subSteps);
   const double pull = length(gravity);
   blocks.build(bodies, narrow.calm(), uncoloured, pull > 0 ? (1 / pull) * gravity : Vec2{},
                leftUndone > kUnsettled * pull * dt / method.subSteps);
@@ -162,7 +162,8 @@ void RigidSystem::State::beginStep(double step) {
   typicalWidth /= std::max(moving, 1);
   bouncing.clear();
   for (std::size_t k = 0; mayBounce && k < narrow.calm().size(); ++k)
-    if (narrow.calm()[k].bounce > 0) bouncing.push_back(static_cast<int>(k));
+    if (const Contact& c = narrow.calm()[k]; c.bounce > 0 && !press.sinks(c.a, c.b))
+      bouncing.push_back(static_cast<int>(k));
   springs.beginStep(bodies, dt, method.subSteps);
   joints.beginStep(bodies, dt, method.subSteps);
   calmShare.assign(bodies.count(), Motion{});
@@ -234,6 +235,7 @@ void RigidSystem::State::impacts(double h) {
 
 // What is pressed into each other and pushed apart already does not bounce: it would be struck over and over.
 bool RigidSystem::State::isSqueezed(const Contact& contact) const {
+  if (press.sinks(contact.a, contact.b)) return true;
   const double deep = -kSqueezed * thinner(bodies, contact.a, contact.b);
   for (int k = 0; k < contact.count; ++k)
     if (contact.points[k].impulseN > 0 &&
@@ -355,26 +357,27 @@ void RigidSystem::State::endStep(double step) {
   giveBackSpare();
   contactTotals = {};
   const bool pressing = press.begin(bodies);
-  auto count = [&](const ContactPoint& p, double gap) {
-    contactTotals.contacts += p.impulseN > 0 || gap <= 0;
-    contactTotals.overlap = std::max(contactTotals.overlap, -gap);
+  auto count = [&](const Contact& contact, bool isUpToDate) {
+    double overlap = 0;
+    for (int k = 0; k < contact.count; ++k) {
+      const ContactPoint& p = contact.points[k];
+      const double gap = p.gap + (isUpToDate ? 0 : gapMoved(bodies, contact, p));
+      contactTotals.contacts += p.impulseN > 0 || gap <= 0;
+      overlap = std::max(overlap, -gap);
+    }
+    contactTotals.overlap = std::max(contactTotals.overlap, overlap);
+    if (pressing && contact.count > 0) press.add(bodies, contact, overlap);
   };
-  for (const SolvedContact& contact : narrow.lively()) {
-    if (pressing) press.add(bodies, contact);
-    for (int k = 0; k < contact.count; ++k)
-      count(contact.points[k], contact.points[k].gap + gapMoved(bodies, contact, contact.points[k]));
-  }
+  for (const SolvedContact& contact : narrow.lively()) count(contact, false);
   turned.resize(bodies.count());
   for (int b = 0; b < bodies.count(); ++b) turned[b] = turnedBy({}, bodies.moved[b].turn);
   calmTouches = static_cast<std::ptrdiff_t>(touches.size());
   for (std::size_t k = 0; k < narrow.calm().size(); ++k) {
     Contact& contact = narrow.calm()[k];
     blocks.readBack(static_cast<int>(k), contact);
-    const bool counts = !narrow.isDropped(static_cast<int>(k));
-    if (counts && pressing) press.add(bodies, contact);
     collectTouch(contact);
     bringUpToDate(bodies, turned, contact);  // it may be used again
-    for (int p = 0; counts && p < contact.count; ++p) count(contact.points[p], contact.points[p].gap);
+    if (!narrow.isDropped(static_cast<int>(k))) count(contact, true);
   }
   if (pressing) press.end(bodies);
   narrow.endStep(broad);
