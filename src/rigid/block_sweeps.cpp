@@ -58,7 +58,7 @@ void BlockSweeps<Number>::fillBlock(Block& block, const Bodies& bodies, const st
     const Contact& c = contacts[which[l]];
     block.a[l] = kNumbers * c.a;
     block.b[l] = kNumbers * c.b;
-    block.count = std::max(block.count, c.count);
+    block.count = std::max<int>(block.count, c.count);
     const InverseMass &a = bodies.inverse[c.a], &b = bodies.inverse[c.b];
     auto brief = [](double x) { return static_cast<Number>(x); };
     numbers(block.nx)[l] = brief(c.normal.x);

@@ -4,7 +4,7 @@ namespace smokebox {
 
 Extent extentOf(const BodyShape& shape) {
   Extent extent;
-  extent.reach = extent.turningReach = shape.reach;
+  extent.reach = shape.reach;
   extent.thinnest = shape.thinnest;
   if (!shape.tree.nodes().empty()) {
     extent.centre = shape.tree.nodes()[0].centre;
@@ -15,7 +15,6 @@ Extent extentOf(const BodyShape& shape) {
   if (extent.only && first.points.size() == 1) {
     extent.centre = first.points[0];
     extent.radius = first.radius;
-    if (first.points[0] == Vec2{0, 0}) extent.turningReach = 0;
   }
   return extent;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "rigid/contact.h"
 #include "rigid/system.h"
 
 namespace smokebox {
@@ -39,14 +40,16 @@ inline Turn turnedBy(Turn turn, double angleRad) {
 
 /// What is asked of a body's shape all the time, side by side. A box around all that can be touched, in its
 /// own coordinates; lengths in metres.
-struct Extent {
+struct alignas(64) Extent {
   Vec2 centre, half;                  // of the box
   double reach = 0;                   // from the centre of mass to the farthest point
-  double turningReach = 0;            // how far from the centre of mass a turn moves anything: 0 for a disk
   double thinnest = 0;                // smallest width of a part
   double radius = 0;                  // of the disk that it is; 0: another shape
   const ConvexPiece* only = nullptr;  // piece, if there is but one
+  /// How far from the centre of mass a turn moves anything, m: 0 for a disk about it.
+  double turningReach() const { return radius > 0 && centre.x == 0 && centre.y == 0 ? 0 : reach; }
 };
+static_assert(sizeof(Extent) == 64);
 Extent extentOf(const BodyShape& shape);
 
 /// What a step asks of a body's BodyDef for each pair, side by side.
@@ -76,8 +79,15 @@ struct Bodies {
     const std::pair<int, int> pair = std::minmax(a, b);
     return !joined.empty() && std::binary_search(joined.begin(), joined.end(), pair);
   }
-  bool surfacesChanged = true;  // since the step before
+  /// Of the world's images beyond periodic sides, m.
+  Vec2 period;
+  Vec2 shiftOf(const Contact& contact) const { return {contact.sx * period.x, contact.sy * period.y}; }
+
+  bool defsChanged = true;      // of any body, since the step before
+  bool surfacesChanged = true;  // with that: any surface
   void takeSurfaces() {
+    surfacesChanged = false;
+    if (!defsChanged) return;
     surfacesChanged = surface.size() != def.size();
     surface.resize(def.size());
     for (std::size_t b = 0; b < def.size(); ++b) {

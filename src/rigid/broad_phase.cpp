@@ -146,21 +146,15 @@ void BroadPhase::dropAndInsert(const Bodies& bodies) {
     return !listed_[key.a] || !listed_[key.b] || bodies.areJoined(key.a, key.b) ||
            !fat_[key.a].meets(shifted(fat_[key.b], shiftOf(key)));
   };
-  std::size_t left = 0, fresh = 0, at = 0;
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const PairKey& key = pairs_[k].key;
-    while (at < found_.size() && found_[at] < key) found_[fresh++] = found_[at++];
-    if (at < found_.size() && found_[at] == key) ++at;
-    if (isOver(key)) continue;
-    if (left != k) pairs_[left] = pairs_[k];
-    ++left;
+  next_.clear();
+  auto at = found_.begin();
+  for (const BodyPair& pair : pairs_) {
+    for (; at != found_.end() && *at < pair.key; ++at) next_.push_back({*at});
+    if (at != found_.end() && *at == pair.key) ++at;
+    if (!isOver(pair.key)) next_.push_back(pair);
   }
-  while (at < found_.size()) found_[fresh++] = found_[at++];
-  pairs_.resize(left + fresh);
-  for (std::size_t to = pairs_.size(); fresh > 0;) {
-    const bool isNew = left == 0 || pairs_[left - 1].key < found_[fresh - 1];
-    pairs_[--to] = isNew ? BodyPair{found_[--fresh]} : pairs_[--left];
-  }
+  for (; at != found_.end(); ++at) next_.push_back({*at});
+  pairs_.swap(next_);
 }
 
 void BroadPhase::extend(const Bodies& bodies, const std::vector<int>& which, const std::vector<Motion>& way,

@@ -17,8 +17,10 @@ struct PairKey {
   auto operator<=>(const PairKey&) const = default;
 };
 
-struct BodyPair {
+struct alignas(64) BodyPair {
   PairKey key;
+  bool apart = false;    // there is nothing closer than `margin`, whatever turns: not only no contact
+  bool follows = false;  // its contacts go along with an edge, each
   // Contacts of the last step, from then on of this one: a range of the narrow phase's ...
   int first = 0, count = 0;
   // ... all that are closer than `margin` (below 0: to be found anew) ...
@@ -26,8 +28,8 @@ struct BodyPair {
   // ... when b was there, seen from a, and they had turned so far.
   Vec2 between{};
   double angleA = 0, angleB = 0;
-  bool apart = false;  // there is nothing closer, whatever turns: not only no contact
 };
+static_assert(sizeof(BodyPair) == 64);
 
 class BroadPhase {
  public:
@@ -60,7 +62,7 @@ class BroadPhase {
   std::vector<char> listed_, refitted_;  // by body
   BoxTree tree_;
   std::vector<int> items_;
-  std::vector<BodyPair> pairs_;
+  std::vector<BodyPair> pairs_, next_;
   std::vector<PairKey> found_, late_;  // late: found within a step
   long sinceBuild_ = 0;
 };

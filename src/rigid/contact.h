@@ -10,23 +10,25 @@ struct ContactPoint {
   Vec2 armA, armB;  // from each body's centre of mass
   double gap = 0;   // m, below 0: overlap; for the bodies' places when the contact was found
   double impulseN = 0, impulseT = 0;  // N s of a sub-step
-  std::uint32_t feature = 0;
 };
 
-struct Contact {
+/// Three lines of the cache, of which each step of many bodies reads and writes all there are.
+struct alignas(64) Contact {
   int a = 0, b = 0;
   int pieceA = 0, pieceB = 0;
-  int count = 0;
-  std::int8_t face = 0;  // whose edge gives the normal and meets corners: 1 a, 2 b; 0: none
-  bool struck = false;   // had an impact in this sub-step
-  bool met = false;      // an impact has placed its points anew
-  Vec2 normal;           // from a to b
-  Vec2 shift;            // of the image of b that is meant, beyond a periodic side
+  std::int8_t count = 0;              // of points
+  std::int8_t face = 0;               // whose edge gives the normal and meets corners: 1 a, 2 b; 0: none
+  std::int8_t sx = 0, sy = 0;         // the image of b that is meant, as PairKey has it
+  bool struck = false;                // had an impact in this sub-step
+  bool met = false;                   // an impact has placed its points anew
+  std::uint32_t feature[2] = {0, 0};  // by point: the edge and the corner that meet
+  Vec2 normal;                        // from a to b
   double friction = 0, bounce = 0;
   double approach = 0;  // fastest at which its points met in this step, m/s
   double total = 0;     // N s along the normal in this step, impacts too
   ContactPoint points[2];
 };
+static_assert(sizeof(Contact) == 192);
 
 /// One that is solved by itself, with what that takes.
 struct SolvedContact : Contact {

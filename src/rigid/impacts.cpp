@@ -110,10 +110,10 @@ bool Impacts::meet(const Bodies& bodies, const std::vector<Motion>& way, Contact
   for (int round = 0; round < kRounds; ++round) {
     const Frame fa = frameAt(bodies, way, contact.a, h, now);
     Frame fb = frameAt(bodies, way, contact.b, h, now);
-    fb.position = fb.position + contact.shift;
+    fb.position = fb.position + bodies.shiftOf(contact);
     if (!collide(pa, fa, pb, fb, margin, manifold)) return false;
     met.normal = manifold.normal;
-    met.count = manifold.count;
+    met.count = static_cast<std::int8_t>(manifold.count);
     const double late = dot(acceleration(bodies, met), met.normal) * (now - 0.5 * h);
     double gap = margin, speed = 0;
     for (int k = 0; k < met.count; ++k) {
@@ -121,7 +121,7 @@ bool Impacts::meet(const Bodies& bodies, const std::vector<Motion>& way, Contact
       p.armA = manifold.points[k].point - fa.position;
       p.armB = manifold.points[k].point - fb.position;
       p.gap = manifold.points[k].gap;
-      p.feature = manifold.points[k].feature;
+      met.feature[k] = manifold.points[k].feature;
       const double v = partingSpeed(bodies, met, p) + late;
       if (v < 0 && p.gap < gap) {
         gap = p.gap;
@@ -155,7 +155,7 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   const double late = dot(acceleration(bodies, contact), n) * (now - 0.5 * h);
 
   const Vec2 xa = frameAt(bodies, way, contact.a, h, now).position,
-             xb = frameAt(bodies, way, contact.b, h, now).position + contact.shift;
+             xb = frameAt(bodies, way, contact.b, h, now).position + bodies.shiftOf(contact);
 
   // The points that strike now, with arms from where the centres of mass are at this moment.
   ContactPoint struck[2];
@@ -172,7 +172,7 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   const double bend = 0.5 * dot(acceleration(bodies, contact), n) * now * (now - h);
   auto settle = [&] {
     const Vec2 atA = bodies.positionNow(contact.a) + way[contact.a].linear(),
-               atB = bodies.positionNow(contact.b) + way[contact.b].linear() + contact.shift;
+               atB = bodies.positionNow(contact.b) + way[contact.b].linear() + bodies.shiftOf(contact);
     for (int p = 0; p < contact.count; ++p) {
       ContactPoint& point = contact.points[p];
       const double speed = partingSpeed(bodies, contact, point);

@@ -74,7 +74,7 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, const Press
     const double sunk = moves ? kStraySunk * press.sunk(b) : 0;
     const double room = moves ? fall + stray + sunk : 0;
     expected_[b].velocity = v;
-    rooms_[b] = {room, 0, 0, extent.turningReach};
+    rooms_[b] = {room, 0, 0, extent.turningReach()};
     if (moves)
       setLimit(b, room, sunk > 0 ? kStrayTurnSunk : kStrayTurn);
     else
@@ -83,12 +83,12 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, const Press
     Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
     seen.position = bodies.position[b];
     seen.velocity = v.linear();
-    seen.turn = v.turn;
     seen.angleRad = bodies.angleRad[b];
-    seen.thinnest = extent.thinnest;
-    seen.turningReach = extent.turningReach;
-    seen.room = room;
-    seen.sunk = sunk;
+    seen.turn = static_cast<float>(v.turn);
+    seen.thinnest = static_cast<float>(extent.thinnest);
+    seen.turningReach = static_cast<float>(extent.turningReach());
+    seen.room = static_cast<float>(room);
+    seen.sunk = static_cast<float>(sunk);
     seen.bounces = bodies.surface[b].bounce > 0;
     seen.pushes = isMoving && !bodies.moves(b);
   }
@@ -141,6 +141,8 @@ void NarrowPhase::takePairs(const Bodies& bodies, BroadPhase& broad, std::size_t
         inheritImpulses(memory_.data() + pair.first, pair.count,
                         kSamePlace * thinner(bodies, pair.key.a, pair.key.b), calm_[c]);
       pair.apart = clear >= pair.margin;
+      pair.follows = std::all_of(calm_.begin() + static_cast<std::ptrdiff_t>(first), calm_.end(),
+                                 [](const Contact& c) { return c.face > 0; });
       pair.margin = std::max(pair.margin, clear);
     } else if (!livelyPair_[k]) {
       for (int c = 0; c < pair.count; ++c) {
@@ -177,13 +179,9 @@ bool NarrowPhase::mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shi
   const Vec2 between = b.position + shift - a.position;
   const double turnedA = std::abs(a.angleRad - pair.angleA), turnedB = std::abs(b.angleRad - pair.angleB);
   const double since = length(between - pair.between) + turnedA * a.turningReach + turnedB * b.turningReach;
-  auto follows = [&] {
-    const auto begin = memory_.begin() + pair.first;
-    return std::all_of(begin, begin + pair.count, [](const Contact& c) { return c.face > 0; });
-  };
   const double sunk = kReuseSunk * std::min(a.sunk, b.sunk);
   const bool same = (since <= kReuse * thin && std::max(turnedA, turnedB) <= kReuseTurn) ||
-                    (since <= kReuseFollowing * thin && follows()) || since <= sunk;
+                    (since <= kReuseFollowing * thin && pair.follows) || since <= sunk;
   if ((pair.apart || same) && margin + since <= pair.margin) return true;
   pair.margin = margin + 2 * kReuseFollowing * thin + sunk;
   pair.between = between;
@@ -293,7 +291,7 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
       return false;
     const double way = relativeSpeed(bodies, a, b) * h;
     auto reach = [&](int body) {
-      return length(struck[body].linear()) + std::abs(struck[body].turn) * bodies.extent[body].turningReach;
+      return length(struck[body].linear()) + std::abs(struck[body].turn) * bodies.extent[body].turningReach();
     };
     pair.swept = way > kSwept * thinner(bodies, a, b);
     pair.clear -= way + reach(a) + reach(b);

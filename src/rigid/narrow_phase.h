@@ -85,16 +85,19 @@ class NarrowPhase {
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
   void replace(LivelyPair& pair, const Bodies& bodies);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
-  /// What is asked of a body at the step's start for each of its pairs, side by side.
-  struct Seen {
+  /// What is asked of a body at the step's start for each of its pairs, side by side in a line of the cache:
+  /// where a bound is enough, in float32.
+  struct alignas(64) Seen {
     Vec2 position, velocity;
-    double turn = 0, angleRad = 0;
-    double thinnest = 0, turningReach = 0;
-    double room = 0;  // as Room's
-    double sunk = 0;  // the part of it that is for what it lies in, m
+    double angleRad = 0;
+    float turn = 0;  // rad/s
+    float thinnest = 0, turningReach = 0;
+    float room = 0;  // as Room's
+    float sunk = 0;  // the part of it that is for what it lies in, m
     bool bounces = false;
     bool pushes = false;  // moves, and nothing moves it
   };
+  static_assert(sizeof(Seen) == 64);
   /// Of the pairs begin to end: which are lively, and which of the others are due to be looked at anew ...
   void sortPairs(BroadPhase& broad, std::size_t begin, std::size_t end, double slow, double dt);
   /// ... and the calm ones' contacts, found or kept.

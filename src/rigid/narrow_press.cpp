@@ -36,7 +36,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
   if (crushed_.empty()) return;
   auto speed = [&](int body) {
     const Motion& v = before[body];
-    return length(v.linear()) + std::abs(v.turn) * bodies.extent[body].turningReach;
+    return length(v.linear()) + std::abs(v.turn) * bodies.extent[body].turningReach();
   };
   // Nothing that gives way can make it faster than the fastest of those around it.
   crushSpeed_.resize(crushed_.size());
@@ -50,7 +50,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
   for (std::size_t k = 0; k < crushed_.size(); ++k) {
     Motion& v = bodies.velocity[crushed_[k]];
     const double linear = length(v.linear()),
-                 turning = std::abs(v.turn) * bodies.extent[crushed_[k]].turningReach;
+                 turning = std::abs(v.turn) * bodies.extent[crushed_[k]].turningReach();
     const double most = crushSpeed_[k];
     crushSpeed_[k] = linear > most || turning > most ? -1 : 0;  // from here on: whether it was
     any |= crushSpeed_[k] < 0;

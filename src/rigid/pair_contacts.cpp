@@ -44,7 +44,7 @@ void bringUpToDate(const Bodies& bodies, const std::vector<Turn>& turned, Contac
   const bool edgeOfA = contact.face == 1;
   contact.normal = rotate(turned[edgeOfA ? contact.a : contact.b], contact.normal);
   const Turn corners = turned[edgeOfA ? contact.b : contact.a];
-  const Vec2 apart = bodies.positionNow(contact.b) + contact.shift - bodies.positionNow(contact.a);
+  const Vec2 apart = bodies.positionNow(contact.b) + bodies.shiftOf(contact) - bodies.positionNow(contact.a);
   for (int k = 0; k < contact.count; ++k) {
     ContactPoint& p = contact.points[k];
     if (edgeOfA) {
@@ -146,15 +146,16 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
     contact.pieceA = pieces.a;
     contact.pieceB = pieces.b;
     contact.normal = manifold.normal;
-    contact.shift = shift;
-    contact.count = manifold.count;
+    contact.sx = key.sx;
+    contact.sy = key.sy;
+    contact.count = static_cast<std::int8_t>(manifold.count);
     contact.face = static_cast<std::int8_t>(manifold.face);
     setSurfaces(bodies, contact);
     for (int k = 0; k < manifold.count; ++k) {
       ContactPoint& p = contact.points[k];
       p.armA = manifold.points[k].point - ta.position;
       p.armB = manifold.points[k].point - tb.position;
-      p.feature = manifold.points[k].feature;
+      contact.feature[k] = manifold.points[k].feature;
       const double speed = partingSpeed(bodies, contact, p);
       contact.approach = std::max(contact.approach, -speed);
       // As of the step's start, by the same straight-line rule that brings it up to date.

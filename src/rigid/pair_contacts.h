@@ -21,8 +21,8 @@ inline double thinner(const Bodies& bodies, int a, int b) {
 /// Largest speed of any point of one against any of the other, m/s.
 inline double relativeSpeed(const Bodies& bodies, int a, int b) {
   const Motion &va = bodies.velocity[a], &vb = bodies.velocity[b];
-  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach +
-         std::abs(vb.turn) * bodies.extent[b].turningReach;
+  return length(va.linear() - vb.linear()) + std::abs(va.turn) * bodies.extent[a].turningReach() +
+         std::abs(vb.turn) * bodies.extent[b].turningReach();
 }
 /// A bound from below on how far two bodies are apart, m: by the circles around them, then by the box of one
 /// and the circle of the other. `enough`: what needs no better one.
@@ -50,7 +50,7 @@ void inheritImpulses(const Old* old, int count, double near, Contact& contact) {
     bool given[2] = {false, false}, taken[2] = {false, false};
     for (int k = 0; k < contact.count; ++k)
       for (int l = 0; l < before.count; ++l)
-        if (before.points[l].feature == contact.points[k].feature) {
+        if (before.feature[l] == contact.feature[k]) {
           pass(before.points[l], contact.points[k]);
           given[l] = taken[k] = true;
         }

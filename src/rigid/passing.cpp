@@ -96,8 +96,8 @@ bool Passing::stopPair(const Bodies& bodies, const std::vector<Motion>& way, con
   if (stops_[a].share >= 1 && stops_[b].share >= 1) {
     const Motion &wa = way[a], &wb = way[b];
     const double most = length(wa.linear() - wb.linear()) +
-                        std::abs(wa.turn) * bodies.extent[a].turningReach +
-                        std::abs(wb.turn) * bodies.extent[b].turningReach;
+                        std::abs(wa.turn) * bodies.extent[a].turningReach() +
+                        std::abs(wb.turn) * bodies.extent[b].turningReach();
     if (most <= kSwept * thin) return false;
   }
   // Until the first of the two waits, until the other one does, and then.
@@ -110,8 +110,8 @@ bool Passing::stopPair(const Bodies& bodies, const std::vector<Motion>& way, con
     const Motion b0 = displaced(bodies, way, b, from), b1 = displaced(bodies, way, b, end);
     const Vec2 wa = a1.linear() - a0.linear(), wb = b1.linear() - b0.linear();
     const double ta = a1.turn - a0.turn, tb = b1.turn - b0.turn;
-    const double most = length(wa - wb) + std::abs(ta) * bodies.extent[a].turningReach +
-                        std::abs(tb) * bodies.extent[b].turningReach;
+    const double most = length(wa - wb) + std::abs(ta) * bodies.extent[a].turningReach() +
+                        std::abs(tb) * bodies.extent[b].turningReach();
     if (most > kSwept * thin) {
       const Frame fa = frameAfter(bodies, a, a0);
       Frame fb = frameAfter(bodies, b, b0);

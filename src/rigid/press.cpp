@@ -18,7 +18,7 @@ constexpr double kSunk = 0.1;
 
 double speedOf(const Bodies& bodies, int body) {
   const Motion& v = bodies.velocity[body];
-  return std::max(length(v.linear()), std::abs(v.turn) * bodies.extent[body].turningReach);
+  return std::max(length(v.linear()), std::abs(v.turn) * bodies.extent[body].turningReach());
 }
 }  // namespace
 

@@ -61,6 +61,7 @@ void RigidSystem::remove(int body) {
   s.bodies.there[body] = 0;
   s.bodies.inverse[body] = {};
   s.bodies.velocity[body] = {};
+  s.bodies.defsChanged = true;
   s.springs.removeAt(body);
   for (int k = 0; k < s.joints.count(); ++k) {
     const JointDef& joint = s.joints.def(k);
@@ -164,14 +165,19 @@ void RigidSystem::release(int body) {
 void RigidSystem::setSurface(int body, double bounce, double friction) {
   state_->bodies.def[body].bounce = bounce;
   state_->bodies.def[body].friction = friction;
+  state_->bodies.defsChanged = true;
 }
 
 void RigidSystem::setDamping(int body, double linear, double angular) {
   state_->bodies.def[body].linearDamping = linear;
   state_->bodies.def[body].angularDamping = angular;
+  state_->bodies.defsChanged = true;
 }
 
-void RigidSystem::setGravityScale(int body, double scale) { state_->bodies.def[body].gravityScale = scale; }
+void RigidSystem::setGravityScale(int body, double scale) {
+  state_->bodies.def[body].gravityScale = scale;
+  state_->bodies.defsChanged = true;
+}
 
 void RigidSystem::setMass(int body, double mass, double inertia) {
   state_->bodies.def[body].mass = mass;

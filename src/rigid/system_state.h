@@ -29,6 +29,8 @@ struct RigidSystem::State {
   void endStep(double dt);
 
   void addWalls();
+  /// What follows from the bodies' definitions alone.
+  void takeCensus();
   void startVelocities(double h);
   void findAhead(int body, double h);
   void giveBackSpare();
@@ -88,6 +90,8 @@ struct RigidSystem::State {
   bool damped = false;                    // a body is
   std::vector<InverseMass> forImpacts;    // while bodies.inverse is for forces
   std::vector<Drive> drives, halfDrives;  // of a sub-step, of half of one
+  double drivesStep = 0;                  // the sub-step and the gravity that they are for
+  Vec2 drivesGravity;
   BroadPhase broad;
   NarrowPhase narrow;
   ContactBlocks blocks;

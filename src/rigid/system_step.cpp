@@ -24,6 +24,7 @@ constexpr double kForce = 4;
 
 RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads)
     : walls(bounds), gravity(pull), method(how), pool(threads), broad(bounds) {
+  bodies.period = {bounds.width, bounds.height};
   addWalls();
 }
 
@@ -63,6 +64,7 @@ void RigidSystem::State::addWalls() {
 }
 
 void RigidSystem::State::setInverse(int body) {
+  bodies.defsChanged = true;
   const BodyDef& def = bodies.def[body];
   bodies.inverse[body] = {};
   if (def.held || def.mass <= 0) return;
@@ -100,22 +102,26 @@ void RigidSystem::State::findSeenByForces() {
 // gravity has changed, what it did to the last half is put right.
 void RigidSystem::State::startVelocities(double h) {
   firstOfStep = true;
-  damped = false;
+  const bool changed = bodies.defsChanged || h != drivesStep || gravity != drivesGravity;
+  drivesStep = h;
+  drivesGravity = gravity;
+  if (changed) damped = false;
   constexpr double kLeast = 1e-6;  // of a velocity; what is damped more has no past to come from
   drives.resize(bodies.count());
   halfDrives.resize(bodies.count());
   for (int b = kWalls; b < bodies.count(); ++b) {
     if (!bodies.there[b]) continue;
     Motion& v = bodies.velocity[b];
-    const BodyDef& def = bodies.def[b];
-    if (def.mass <= 0) {
+    if (bodies.surface[b].isDriven) {
       const Vec2 by = targetPlace[b] - bodies.position[b];
       v = {by.x / dt, by.y / dt, (targetAngle[b] - bodies.angleRad[b]) / dt};
     }
+    if (!changed && !fresh[b]) continue;
     if (!bodies.moves(b)) {
       drives[b] = halfDrives[b] = {};
       continue;
     }
+    const BodyDef& def = bodies.def[b];
     damped |= def.linearDamping > 0 || def.angularDamping > 0;
     const Drive now = driveOver(def, 0.5 * h), was = halfDrives[b];
     drives[b] = driveOver(def, h);
@@ -150,6 +156,23 @@ void RigidSystem::State::beginStep(double step) {
     spare.emplace_back(narrow.calm()[k]);
     setMasses(bodies, spare.back());
   }
+  if (bodies.defsChanged) takeCensus();
+  bodies.defsChanged = false;
+  bouncing.clear();
+  for (std::size_t k = 0; mayBounce && k < narrow.calm().size(); ++k)
+    if (const Contact& c = narrow.calm()[k]; c.bounce > 0 && !press.sinks(c.a, c.b))
+      bouncing.push_back(static_cast<int>(k));
+  springs.beginStep(bodies, dt, method.subSteps);
+  joints.beginStep(bodies, dt, method.subSteps);
+  calmShare.resize(bodies.count());
+  shareKnown = false;
+  impact.beginStep();
+  flying.resize(bodies.count(), 1);
+  struck.resize(bodies.count());
+  way.resize(bodies.count());
+}
+
+void RigidSystem::State::takeCensus() {
   mayBounce = false;
   int moving = 0;
   typicalWidth = 0;
@@ -160,18 +183,6 @@ void RigidSystem::State::beginStep(double step) {
     typicalWidth += bodies.extent[b].thinnest;
   }
   typicalWidth /= std::max(moving, 1);
-  bouncing.clear();
-  for (std::size_t k = 0; mayBounce && k < narrow.calm().size(); ++k)
-    if (const Contact& c = narrow.calm()[k]; c.bounce > 0 && !press.sinks(c.a, c.b))
-      bouncing.push_back(static_cast<int>(k));
-  springs.beginStep(bodies, dt, method.subSteps);
-  joints.beginStep(bodies, dt, method.subSteps);
-  calmShare.assign(bodies.count(), Motion{});
-  shareKnown = false;
-  impact.beginStep();
-  flying.resize(bodies.count(), 1);
-  struck.assign(bodies.count(), Motion{});
-  way.assign(bodies.count(), Motion{});
 }
 
 void RigidSystem::State::predict(double h) {
