@@ -40,16 +40,20 @@ constexpr int kDeepRounds = 3;
 }  // namespace
 
 void RigidSystem::State::warmStartAll(double h) {
-  start.resize(bodies.count());
-  if (shareKnown) {  // the calm contacts' normals and arms are the same all through the step: so is their sum
-    for (int b = 0; b < bodies.count(); ++b) {
-      const Lanes v = load(&bodies.velocity[b].x);
-      store(&start[b].x, v);
-      store(&bodies.velocity[b].x, v + load(&calmShare[b].x));
-    }
-  } else {
-    start = bodies.velocity;
-    blocks.warmStart(bodies);
+  switch (carried) {
+    case Carried::all:
+      bodies.velocity.swap(start);
+      break;
+    case Carried::share:
+      for (int b = 0; b < bodies.count(); ++b) {
+        const Lanes v = load(&bodies.velocity[b].x), added = load(&start[b].x);
+        store(&start[b].x, v);
+        store(&bodies.velocity[b].x, v + added);
+      }
+      break;
+    case Carried::nothing:
+      start = bodies.velocity;
+      blocks.warmStart(bodies);
   }
   warmStart(bodies, spare);
   warmStart(bodies, narrow.lively());
@@ -87,29 +91,23 @@ void RigidSystem::State::findFlying(double h) {
   }
 }
 
-void RigidSystem::State::findCalmShare() {
-  // After contacts were dropped or found anew, not all that the velocities gained is on record.
-  shareKnown = springs.empty() && joints.empty() && !stirred;
-  if (!shareKnown) return;
-  for (int b = kWalls; b < bodies.count(); ++b)
-    store(&calmShare[b].x, load(&bodies.velocity[b].x) - load(&start[b].x));
-  auto takeOut = [&](const std::vector<SolvedContact>& contacts) {
-    for (const SolvedContact& contact : contacts)
+// From what is carried on to the next sub-step, the part of the contacts that are solved one by one: they may
+// be others then.
+void RigidSystem::State::takeOutLone() {
+  for (const std::vector<SolvedContact>* contacts : {&spare, &narrow.lively()})
+    for (const SolvedContact& contact : *contacts)
       for (int k = 0; k < contact.count; ++k) {
         const ContactPoint& p = contact.points[k];
         const Vec2 j = p.impulseN * contact.normal + p.impulseT * perpendicular(contact.normal);
         auto one = [&](int body, Vec2 arm, double sign) {
           const InverseMass& m = bodies.inverse[body];
-          calmShare[body].x -= sign * m.mass * j.x;
-          calmShare[body].y -= sign * m.mass * j.y;
-          calmShare[body].turn -= sign * m.inertia * cross(arm, j);
+          start[body].x -= sign * m.mass * j.x;
+          start[body].y -= sign * m.mass * j.y;
+          start[body].turn -= sign * m.inertia * cross(arm, j);
         };
         one(contact.a, p.armA, -1);
         one(contact.b, p.armB, 1);
       }
-  };
-  takeOut(spare);
-  takeOut(narrow.lively());
 }
 
 MoveApart RigidSystem::State::moveApart(double h) const {
@@ -217,7 +215,6 @@ void RigidSystem::State::solveContacts(double h) {
   narrow.yieldCrushed(bodies, start);
   press.yield(bodies);
   if (mayBounce) findFlying(h);
-  findCalmShare();
 }
 
 // Writes the impulses of those that are solved one by one where the others' are: whoever drops them finds

@@ -8,6 +8,7 @@
 #include "rigid/contact_blocks.h"
 #include "rigid/impacts.h"
 #include "rigid/joint_set.h"
+#include "rigid/lanes.h"
 #include "rigid/narrow_phase.h"
 #include "rigid/press.h"
 #include "rigid/rough_contacts.h"
@@ -41,14 +42,18 @@ struct RigidSystem::State {
   void sweepRough(double h, double change);
   MoveApart moveApart(double h) const;
   void separateAll(double h);
-  void findCalmShare();
+  void takeOutLone();
   void findFlying(double h);
   void yieldTorn();
   void impacts(double h);
   void moveOn(double h);
   bool isSqueezed(const Contact& contact) const;
   bool meetsFast(const Contact& contact, double h) const;
-  void keepInside();
+  bool isInside(int body) const;
+  void keepInside(int body);
+  void remember(double h, double left);
+  /// A velocity after what the body does by itself in a sub-step.
+  Lanes drivenBy(int body, Lanes velocity) const;
   void warmStartAll(double h);
   void collectTouch(const Contact& contact);
   void sortTouches();
@@ -56,6 +61,7 @@ struct RigidSystem::State {
   bool outside(int body) const;
 
   RigidWalls walls;
+  Vec2 edge;  // of the domain: who is nearer to a side than so much is not inside, m
   Vec2 gravity;
   RigidMethod method;
   ThreadPool& pool;
@@ -70,10 +76,12 @@ struct RigidSystem::State {
   std::vector<Motion> before;      // velocities before the last sub-step
   std::vector<Motion> beforeThat;  // and before the one before it
   std::vector<Motion> struck;      // what impacts add to a body's way in this sub-step
-  std::vector<Motion> start;       // velocities before the contact solver
+  std::vector<Motion> start;       // velocities before the contact solver; else, what is carried
   std::vector<char> flying;        // it hardly changed them; kept where something may bounce
-  std::vector<Motion> calmShare;   // what the calm contacts added to them in the last sub-step
-  bool shareKnown = false;
+  /// To the next sub-step, in `start`: nothing, what the calm contacts add to its velocities, or all that it
+  /// begins to solve with; `velocity` is then predicted already.
+  enum class Carried { nothing, share, all };
+  Carried carried = Carried::nothing;
   bool firstOfStep = false;  // sub-step
   bool stirred = false, anyStruck = false, mayBounce = false;
   std::vector<Motion> way;  // of a sub-step, where pairs may pass through each other

@@ -24,7 +24,9 @@ constexpr double kForce = 4;
 
 RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads)
     : walls(bounds), gravity(pull), method(how), pool(threads), broad(bounds) {
+  constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
   bodies.period = {bounds.width, bounds.height};
+  edge = kEdge * bodies.period;
   addWalls();
 }
 
@@ -110,7 +112,10 @@ void RigidSystem::State::startVelocities(double h) {
   drives.resize(bodies.count());
   halfDrives.resize(bodies.count());
   for (int b = kWalls; b < bodies.count(); ++b) {
-    if (!bodies.there[b]) continue;
+    if (!bodies.there[b]) {
+      drives[b] = halfDrives[b] = {};
+      continue;
+    }
     Motion& v = bodies.velocity[b];
     if (bodies.surface[b].isDriven) {
       const Vec2 by = targetPlace[b] - bodies.position[b];
@@ -164,8 +169,8 @@ void RigidSystem::State::beginStep(double step) {
       bouncing.push_back(static_cast<int>(k));
   springs.beginStep(bodies, dt, method.subSteps);
   joints.beginStep(bodies, dt, method.subSteps);
-  calmShare.resize(bodies.count());
-  shareKnown = false;
+  start.resize(bodies.count());
+  carried = Carried::nothing;
   impact.beginStep();
   flying.resize(bodies.count(), 1);
   struck.resize(bodies.count());
@@ -185,18 +190,28 @@ void RigidSystem::State::takeCensus() {
   typicalWidth /= std::max(moving, 1);
 }
 
+// Of the last two sub-steps, what findAhead() asks for.
+void RigidSystem::State::remember(double h, double left) {
+  if (left > 2.5 * h) return;
+  beforeThat.swap(before);
+  before = bodies.velocity;
+  if (beforeThat.size() != before.size()) beforeThat = before;
+}
+
+Lanes RigidSystem::State::drivenBy(int body, Lanes velocity) const {
+  const Lanes drive = load(&drives[body].gain.x), zero{};
+  const Lanes left = __builtin_shufflevector(drive, drive, 2, 2, 3, 3),
+              gain = __builtin_shufflevector(drive, zero, 0, 1, 6, 7);
+  return left * velocity + gain;
+}
+
 void RigidSystem::State::predict(double h) {
-  if (timeLeft < 2.5 * h) {  // the last two
-    beforeThat.swap(before);
-    before = bodies.velocity;
-    if (beforeThat.size() != before.size()) beforeThat = before;
-  }
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    const Lanes drive = load(&drives[b].gain.x), zero{};
-    const Lanes left = __builtin_shufflevector(drive, drive, 2, 2, 3, 3),
-                gain = __builtin_shufflevector(drive, zero, 0, 1, 6, 7);
-    double* v = &bodies.velocity[b].x;
-    store(v, left * load(v) + gain);
+  if (carried != Carried::all) {  // else the last sub-step has done it
+    remember(h, timeLeft);
+    for (int b = kWalls; b < bodies.count(); ++b) {
+      double* v = &bodies.velocity[b].x;
+      store(v, drivenBy(b, load(v)));
+    }
   }
   narrow.refresh(bodies, broad, h, nullptr);
 }
@@ -239,7 +254,7 @@ void RigidSystem::State::impacts(double h) {
     anyStruck = true;
     giveBackSpare();
     if (narrow.stir(bodies, &struck, broad, gravity, blocks, timeLeft) != NarrowPhase::Stir::none)
-      shareKnown = false;
+      carried = Carried::nothing;
     narrow.refreshAfterImpacts(bodies, broad, h, struck, impact.moments());
   }
 }
@@ -262,6 +277,8 @@ bool RigidSystem::State::meetsFast(const Contact& contact, double h) const {
   return false;
 }
 
+// What can be made of the next sub-step's velocities as the bodies come by anyway: the calm contacts' normals
+// and arms are the same all through the step, and so is the sum of what their impulses add.
 void RigidSystem::State::moveOn(double h) {
   const bool mayPass = narrow.mayPass(bodies, h);
   if (mayPass) {
@@ -270,14 +287,38 @@ void RigidSystem::State::moveOn(double h) {
   }
   const std::vector<Motion>& by = mayPass ? way : bodies.velocity;
   const double times = mayPass ? 1 : h;
-  for (int b = kWalls; b < bodies.count(); ++b)
-    store(&bodies.moved[b].x, load(&bodies.moved[b].x) + times * load(&by[b].x));
+  const auto each = [&](auto&& carry) {
+    for (int b = kWalls; b < bodies.count(); ++b) {
+      const Lanes v = load(&bodies.velocity[b].x), added = v - load(&start[b].x);
+      store(&bodies.moved[b].x, load(&bodies.moved[b].x) + times * load(&by[b].x));
+      if (!isInside(b)) keepInside(b);
+      carry(b, added);
+    }
+  };
+  if (carried == Carried::all) {
+    remember(h, timeLeft - h);
+    std::copy_n(bodies.velocity.begin(), kWalls, start.begin());
+    each([&](int b, Lanes added) {
+      const Lanes v = drivenBy(b, load(&bodies.velocity[b].x));
+      store(&bodies.velocity[b].x, v);
+      store(&start[b].x, v + added);
+    });
+  } else if (carried == Carried::share) {
+    std::fill_n(start.begin(), kWalls, Motion{});
+    each([&](int b, Lanes added) { store(&start[b].x, added); });
+  } else {
+    each([](int, Lanes) {});
+  }
 }
 
 void RigidSystem::State::move(double h) {
+  const bool isLast = timeLeft < 1.5 * h;
+  // After contacts were dropped or found anew, not all that the velocities gained is on record.
+  const bool isKnown = springs.empty() && joints.empty() && !stirred && !isLast;
+  carried = !isKnown ? Carried::nothing : mayBounce ? Carried::share : Carried::all;
   moveOn(h);
+  if (isKnown) takeOutLone();
   separateAll(h);
-  keepInside();
   for (const Contact& contact : narrow.lively()) collectTouch(contact);
   narrow.advance();
   timeLeft -= h;
@@ -296,31 +337,27 @@ void RigidSystem::State::sortTouches() {
   std::inplace_merge(touches.begin(), middle, touches.end(), isBefore);
 }
 
+bool RigidSystem::State::isInside(int body) const {
+  const Vec2 at = bodies.positionNow(body);
+  return at.x > edge.x && at.x < walls.width - edge.x && at.y > edge.y && at.y < walls.height - edge.y;
+}
+
 // Whatever presses, no centre of mass goes through a closed side of the domain.
-void RigidSystem::State::keepInside() {
-  constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
-  const auto closed = RigidWalls::Kind::closed;
-  const bool shut[] = {walls.sides[0] == closed, walls.sides[1] == closed, walls.sides[2] == closed,
-                       walls.sides[3] == closed};
-  auto keep = [](double at, double size, bool low, bool high, double& moved, double& speed) {
-    const double edge = kEdge * size;
-    if (low && at < edge) {
-      moved += edge - at;
+void RigidSystem::State::keepInside(int body) {
+  if (!bodies.moves(body)) return;
+  const auto keep = [&](double at, double size, double margin, int low, double& moved, double& speed) {
+    const auto isShut = [&](int side) { return walls.sides[side] == RigidWalls::Kind::closed; };
+    if (isShut(low) && at < margin) {
+      moved += margin - at;
       speed = std::max(speed, 0.0);
-    } else if (high && at > size - edge) {
-      moved += size - edge - at;
+    } else if (isShut(low + 1) && at > size - margin) {
+      moved += size - margin - at;
       speed = std::min(speed, 0.0);
     }
   };
-  const Vec2 edge{kEdge * walls.width, kEdge * walls.height};
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    const Vec2 at = bodies.positionNow(b);
-    if (at.x > edge.x && at.x < walls.width - edge.x && at.y > edge.y && at.y < walls.height - edge.y)
-      continue;
-    if (!bodies.moves(b)) continue;
-    keep(at.x, walls.width, shut[0], shut[1], bodies.moved[b].x, bodies.velocity[b].x);
-    keep(at.y, walls.height, shut[2], shut[3], bodies.moved[b].y, bodies.velocity[b].y);
-  }
+  const Vec2 at = bodies.positionNow(body);
+  keep(at.x, walls.width, edge.x, 0, bodies.moved[body].x, bodies.velocity[body].x);
+  keep(at.y, walls.height, edge.y, 2, bodies.moved[body].y, bodies.velocity[body].y);
 }
 
 void RigidSystem::State::collectTouch(const Contact& contact) {
@@ -365,6 +402,8 @@ void RigidSystem::State::findAhead(int body, double h) {
 }
 
 void RigidSystem::State::endStep(double step) {
+  for (int b = kWalls; b < bodies.count(); ++b)
+    if (!isInside(b)) keepInside(b);
   giveBackSpare();
   contactTotals = {};
   const bool pressing = press.begin(bodies);
