@@ -20,10 +20,17 @@ struct ThreadPool::State {
   static constexpr int kGenerationShift = 17;
   static constexpr int kSpins = 200;
 
+  /// A thread's own part of a loop: it begins there, and then helps the others. What one loop has left in a
+  /// core's cache the next one finds there.
+  struct alignas(64) Part {
+    std::atomic<int> next{0};
+    int end = 0;
+  };
+
   std::atomic<std::uint64_t> ticket{0};
-  std::atomic<int> next{0}, sleepers{0};
+  std::atomic<int> sleepers{0};
   std::atomic<bool> stop{false};
-  int count = 0;
+  std::vector<Part> parts;  // by thread; the caller's is the first
   Call call = nullptr;
   void* context = nullptr;
   std::exception_ptr error;
@@ -31,10 +38,24 @@ struct ThreadPool::State {
   std::condition_variable wake;
   std::vector<std::thread> workers;
 
-  void work() {
+  explicit State(int threads) : parts(threads) {}
+
+  void cut(int count) {
+    const auto n = static_cast<std::int64_t>(parts.size());
+    for (std::int64_t k = 0; k < n; ++k) {
+      parts[k].next.store(static_cast<int>(count * k / n), std::memory_order_relaxed);
+      parts[k].end = static_cast<int>(count * (k + 1) / n);
+    }
+  }
+
+  void work(std::size_t thread) {
+    for (std::size_t k = 0; k < parts.size(); ++k) workOn(parts[(thread + k) % parts.size()]);
+  }
+
+  void workOn(Part& part) {
     for (;;) {
-      const int block = next.fetch_add(1, std::memory_order_relaxed);
-      if (block >= count) return;
+      const int block = part.next.fetch_add(1, std::memory_order_relaxed);
+      if (block >= part.end) return;
       try {
         call(context, block);
       } catch (...) {
@@ -48,7 +69,7 @@ struct ThreadPool::State {
     return (t & kOpen) != 0 && t >> kGenerationShift != seen;
   }
 
-  void serve() {
+  void serve(std::size_t thread) {
     std::uint64_t seen = 0;
     while (!stop.load()) {
       std::uint64_t t = ticket.load();
@@ -65,7 +86,7 @@ struct ThreadPool::State {
       }
       if (!ticket.compare_exchange_weak(t, t + 1)) continue;
       seen = t >> kGenerationShift;
-      work();
+      work(thread);
       ticket.fetch_sub(1);
     }
   }
@@ -77,8 +98,10 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(int threads) : threads_(std::max(1, threads)), state_(std::make_unique<State>()) {
-  for (int k = 1; k < threads_; ++k) state_->workers.emplace_back([this] { state_->serve(); });
+ThreadPool::ThreadPool(int threads)
+    : threads_(std::max(1, threads)), state_(std::make_unique<State>(std::max(1, threads))) {
+  for (int k = 1; k < threads_; ++k)
+    state_->workers.emplace_back([this, k] { state_->serve(static_cast<std::size_t>(k)); });
 }
 
 ThreadPool::~ThreadPool() {
@@ -90,15 +113,14 @@ ThreadPool::~ThreadPool() {
 
 void ThreadPool::runRaw(int count, Call call, void* context) {
   State& s = *state_;
-  s.count = count;
   s.call = call;
   s.context = context;
   s.error = nullptr;
-  s.next.store(0);
+  s.cut(count);
   const std::uint64_t generation = (s.ticket.load() >> State::kGenerationShift) + 1;
   s.ticket.store(generation << State::kGenerationShift | State::kOpen);
   s.wakeSleepers();
-  s.work();
+  s.work(0);
   s.ticket.fetch_and(~State::kOpen);
   for (int spin = 0; (s.ticket.load() & State::kActive) != 0; ++spin) {
     if (spin < State::kSpins)

@@ -14,6 +14,8 @@ constexpr int kSpare = 4;
 // Blocks of a colour do not meet: so many are read, solved and written together, and the processor works on
 // several at a time.
 constexpr int kSome = 4;
+// A thread takes so many blocks at a time, where there are this many in a colour.
+constexpr int kGrain = 4 * kSome, kShared = 4 * kGrain;
 constexpr float kFar = 1e30F;      // m/s
 constexpr double kRoughest = 1e6;  // a friction beyond all slip, and finite in float32
 }  // namespace
@@ -35,7 +37,7 @@ void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>&
   blocks_.resize(layout.blocks());
   const std::vector<int>& inLane = layout.inLane();
   // Contacts of a block lie far apart: those of the next one are asked for ahead.
-  const auto askFor = [&](std::size_t block) {
+  const auto askFor = [&](int block) {
     for (int l = 0; l < kLanes; ++l) {
       const int which = inLane[kLanes * block + l];
       if (which < 0) continue;
@@ -43,10 +45,13 @@ void BlockSweeps<Number>::fill(const Bodies& bodies, const std::vector<Contact>&
       for (std::size_t at = 0; at < sizeof(Contact); at += 64) __builtin_prefetch(contact + at);
     }
   };
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    if (k + 1 < blocks_.size()) askFor(k + 1);
-    fillBlock(blocks_[k], bodies, contacts, inLane.data() + kLanes * k, relaxation);
-  }
+  const int count = static_cast<int>(blocks_.size());
+  pool_.blocks(0, count, kShared, [&](int k, int end) {
+    for (; k < end; ++k) {
+      if (k + 1 < count) askFor(k + 1);
+      fillBlock(blocks_[k], bodies, contacts, inLane.data() + kLanes * k, relaxation);
+    }
+  });
 }
 
 template <class Number>
@@ -290,51 +295,63 @@ inline Number BlockSweeps<Number>::solveSome(Block* const* some, int count, Orde
 
 template <class Number>
 template <class Todo>
-void BlockSweeps<Number>::eachColour(bool back, Todo&& todo) const {
+Number BlockSweeps<Number>::shared(int begin, int end, Todo&& todo) {
+  if (end - begin < kShared) return todo(begin, end);
+  return static_cast<Number>(pool_.max(begin, end, kGrain, 0, todo));
+}
+
+template <class Number>
+template <class Todo>
+Number BlockSweeps<Number>::eachColour(bool back, Todo&& todo) {
   const int count = static_cast<int>(colourEnds_.size());
+  Number result = 0;
   for (int k = 0; k < count; ++k) {
     const int colour = back ? count - 1 - k : k;
-    todo(colour > 0 ? colourEnds_[colour - 1] : 0, colourEnds_[colour]);
+    result = std::max(result, shared(colour > 0 ? colourEnds_[colour - 1] : 0, colourEnds_[colour], todo));
   }
+  return result;
 }
 
 template <class Number>
 double BlockSweeps<Number>::sweepFirst(Bodies& bodies, double h, const MoveApart& apart) {
   const Number perSecond = static_cast<Number>(1 / h);
-  Number result = 0;
-  Block* some[kSome];
   const MoveApart own = unrelaxed(apart);
   back_ = !back_ && !(relaxation_ > 1);
-  deep_.clear();
-  eachColour(back_, [&](int k, int end) {
+  overlap_.resize(blocks_.size());
+  change_ = eachColour(back_, [&](int k, int end) {
+    Number result = 0;
+    Block* some[kSome];
     while (k < end) {
       int count = 0;
       for (; count < kSome && k < end; ++k) {
         some[count++] = &blocks_[k];
-        if (static_cast<double>(begin(blocks_[k], bodies.moved.data(), perSecond, own)) > apart.deep)
-          deep_.push_back(k);
+        overlap_[k] = begin(blocks_[k], bodies.moved.data(), perSecond, own);
       }
       result = std::max(result, solveSome(some, count, Order::normalsFirst, bodies.velocity.data()));
     }
+    return result;
   });
-  change_ = result;
-  return static_cast<double>(result);
+  deep_.clear();
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (static_cast<double>(overlap_[k]) > apart.deep) deep_.push_back(static_cast<int>(k));
+  if (back_) std::reverse(deep_.begin(), deep_.end());
+  return static_cast<double>(change_);
 }
 
 template <class Number>
 double BlockSweeps<Number>::sweep(Bodies& bodies) {
-  Number result = 0;
-  Block* some[kSome];
-  eachColour(!back_, [&](int k, int end) {
+  change_ = eachColour(!back_, [&](int k, int end) {
+    Number result = 0;
+    Block* some[kSome];
     while (k < end) {
       int count = 0;
       for (; count < kSome && k < end; ++k)
         if (!(blocks_[k].spare > kSpare * change_)) some[count++] = &blocks_[k];
       result = std::max(result, solveSome(some, count, Order::frictionFirst, bodies.velocity.data()));
     }
+    return result;
   });
-  change_ = result;
-  return static_cast<double>(result);
+  return static_cast<double>(change_);
 }
 
 template <class Number>
@@ -346,26 +363,32 @@ void BlockSweeps<Number>::beginRough(double above) {
 
 template <class Number>
 double BlockSweeps<Number>::sweepRough(Bodies& bodies, double above) {
-  Number result = 0;
-  Block* some[kSome];
-  int which[kSome];
-  std::size_t next = 0, kept = 0;
-  for (const int end : colourEnds_)
-    while (next < rough_.size() && rough_[next] < end) {
-      int count = 0;
-      for (; count < kSome && next < rough_.size() && rough_[next] < end; ++next) {
-        Block& block = blocks_[rough_[next]];
-        if (block.spare > kSpare * change_) continue;
-        some[count] = &block;
-        which[count++] = rough_[next];
+  Number largest = 0;
+  int next = 0;
+  for (const int end : colourEnds_) {
+    const int first = next;
+    while (next < static_cast<int>(rough_.size()) && rough_[next] < end) ++next;
+    const Number result = shared(first, next, [&](int at, int last) {
+      Number some = 0;
+      Block* blocks[kSome];
+      while (at < last) {
+        int count = 0;
+        for (; count < kSome && at < last; ++at) {
+          Block& block = blocks_[rough_[at]];
+          if (block.spare > kSpare * change_)
+            block.change = 0;
+          else
+            blocks[count++] = &block;
+        }
+        some = std::max(some, solveSome(blocks, count, Order::frictionFirst, bodies.velocity.data()));
       }
-      result = std::max(result, solveSome(some, count, Order::frictionFirst, bodies.velocity.data()));
-      for (int k = 0; k < count; ++k)
-        if (static_cast<double>(some[k]->change) >= above) rough_[kept++] = which[k];
-    }
-  rough_.resize(kept);
-  change_ = result;
-  return static_cast<double>(result);
+      return some;
+    });
+    largest = std::max(largest, result);
+  }
+  std::erase_if(rough_, [&](int k) { return static_cast<double>(blocks_[k].change) < above; });
+  change_ = largest;
+  return static_cast<double>(largest);
 }
 
 template <class Number>

@@ -9,12 +9,16 @@
 // contact, and so is the first one of the next sub-step: errors that one order leaves on one side, which make
 // walls lean, do not add up (symmetric successive over-relaxation; Young 1971, ch. 15).
 //
+// The blocks of a colour meet no body twice that moves: several threads work on them, and the result is the
+// same for any number of those.
+//
 // Number: what a block is worked in. The bodies' velocities and places are in float64 whatever it is, and
 // blocks work on differences of those.
 #pragma once
 #include <utility>
 #include <vector>
 
+#include "base/threads.h"
 #include "rigid/bodies.h"
 #include "rigid/contact.h"
 #include "rigid/contact_layout.h"
@@ -33,6 +37,7 @@ class BlockSweeps {
  public:
   static constexpr int kLanes = WideOf<Number>::kCount;
 
+  explicit BlockSweeps(ThreadPool& pool) : pool_(pool) {}
   /// The contacts, which need no effective masses, as they are laid out. `relaxation`: each gives so many
   /// times what it is asked for (successive over-relaxation).
   void fill(const Bodies& bodies, const std::vector<Contact>& contacts, const ContactLayout& layout,
@@ -125,14 +130,19 @@ class BlockSweeps {
   MoveApart unrelaxed(const MoveApart& apart) const {
     return {apart.slop, apart.share / static_cast<double>(relaxation_), apart.most, apart.deep};
   }
-  /// todo(begin, end) for the blocks of each colour, from the first to the last one or back.
+  /// The largest of todo(begin, end) over the blocks of each colour, from the first to the last one or back.
   template <class Todo>
-  void eachColour(bool back, Todo&& todo) const;
+  Number eachColour(bool back, Todo&& todo);
+  /// The same over a part of what todo() counts, which may be cut.
+  template <class Todo>
+  Number shared(int begin, int end, Todo&& todo);
 
+  ThreadPool& pool_;
   std::vector<Block> blocks_;
   std::vector<int> colourEnds_;  // in blocks_
   std::vector<int> rough_;       // blocks
   std::vector<int> deep_;        // blocks
+  std::vector<Number> overlap_;  // by block: the deepest, as this sub-step's first sweep came by
   Number change_ = 0;            // of the last sweep
   bool back_ = false;            // the first sweep of this sub-step went from the last colour to the first
   Number relaxation_ = 1;

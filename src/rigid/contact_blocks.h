@@ -11,6 +11,7 @@ namespace smokebox {
 
 class ContactBlocks {
  public:
+  explicit ContactBlocks(ThreadPool& pool) : exact_(pool), brief_(pool) {}
   /// Lays the contacts out, which need no effective masses; `down`: along gravity, of length 1, or (0, 0).
   /// Those that find no place are listed in `rest`. `areRough`: the sweeps of the last step did not settle
   /// them.

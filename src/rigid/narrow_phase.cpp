@@ -2,227 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "rigid/contact_sweeps.h"
-#include "rigid/lanes.h"
 
 namespace smokebox {
 
 namespace {
-
-// A pair is calm while its bodies move against each other by less than this share of the thinner one's width
-// in a step (less if they bounce): the contact's normal and corners then still hold at its end.
-constexpr double kCalm = 0.25, kCalmTurning = 0.05, kCalmBouncing = 0.01;
-constexpr double kCalmTurn = 0.1;  // rad
-// ... and whether they bounce or not, while they move by less than what so many sub-steps of gravity make of
-// it: a bounce is hardly to be told from rest there.
-constexpr double kCalmSubSteps = 10;
-// A body may stray by this share of its width from the way expected of it, and by this share of that way; but
-// no farther than the last one, and turn by no more than so many radians: that its normals still hold.
-constexpr double kStray = 0.02, kStrayOnWay = 0.4, kStrayMost = 0.06, kStrayTurn = 0.05;
-// What is sunk may stray by so much of its depth more: the normals of deep overlaps are good for that.
-constexpr double kStraySunk = 0.5, kStrayTurnSunk = 0.3;
-// Contacts are found anew once the bodies have moved by this share of the thinner one's width.
-constexpr double kReuse = 2e-3, kReuseFollowing = 8e-3;
-// ... or have turned by so much, rad, where the normal does not follow an edge: no stack leans on those of
-// before.
-constexpr double kReuseTurn = 1e-5;
-// ... or, where both are sunk, by this share of what they may stray for that.
-constexpr double kReuseSunk = 0.5;
-// Lively ones, after this share: less where they bounce.
+// Lively contacts are found anew once the bodies have moved by this share of the thinner one's width: less
+// where they bounce.
 constexpr double kReuseLively = 4e-2, kReuseBouncing = 1e-2;
 // A lively pair that is this many sub-steps apart is left alone for as long.
 constexpr double kAhead = 4;
 // Lively pairs are looked at while they are this share of the thinner one's width apart, beyond their way and
 // what they may move until they are looked at again.
 constexpr double kNear = 0.01;
-// A point that has moved by less than this share of the thinner one's width goes on where another one was.
-constexpr double kSamePlace = 0.1;
-constexpr std::size_t kTogether = 256;  // pairs
-constexpr double kNoBound = std::numeric_limits<double>::infinity();
-
+constexpr int kDue = 32;  // a thread looks for the contacts of so many at a time
 }  // namespace
-
-// A third of the way for each axis.
-void NarrowPhase::setLimit(int body, double limit, double mostTurn) {
-  const double reach = rooms_[body].reach;
-  const double part = limit / 3, turn = std::min(reach > 0 ? part / reach : kNoBound, mostTurn);
-  rooms_[body].limit = limit;
-  rooms_[body].turn = mostTurn;
-  expected_[body].within = {part * part, part * part, turn * turn};
-}
-
-void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, const Press& press, Vec2 gravity,
-                            double dt, int subSteps) {
-  const int count = bodies.count();
-  h_ = dt / subSteps;
-  elapsed_ = 0;
-  const double slow = kCalmSubSteps * h_ * length(gravity) * dt;
-  expected_.resize(count);
-  rooms_.resize(count);
-  seen_.resize(count);
-  stirred_.clear();
-  way_.resize(count);
-  for (int b = 0; b < count; ++b) {
-    const Motion& v = bodies.velocity[b];
-    const bool moves = bodies.there[b] && bodies.moves(b);
-    const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
-    const Extent& extent = bodies.extent[b];
-    const double stray = std::min(kStray * extent.thinnest + kStrayOnWay * dt * length(v.linear()),
-                                  kStrayMost * extent.thinnest);
-    const double sunk = moves ? kStraySunk * press.sunk(b) : 0;
-    const double room = moves ? fall + stray + sunk : 0;
-    expected_[b].velocity = v;
-    rooms_[b] = {room, 0, 0, extent.turningReach()};
-    if (moves)
-      setLimit(b, room, sunk > 0 ? kStrayTurnSunk : kStrayTurn);
-    else
-      setLimit(b, kNoBound, kNoBound);
-    const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
-    Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
-    seen.position = bodies.position[b];
-    seen.velocity = v.linear();
-    seen.angleRad = bodies.angleRad[b];
-    seen.turn = static_cast<float>(v.turn);
-    seen.thinnest = static_cast<float>(extent.thinnest);
-    seen.turningReach = static_cast<float>(extent.turningReach());
-    seen.room = static_cast<float>(room);
-    seen.sunk = static_cast<float>(sunk);
-    seen.bounces = bodies.surface[b].bounce > 0;
-    seen.pushes = isMoving && !bodies.moves(b);
-  }
-  auto& pairs = broad.pairs();
-  livelyPair_.assign(pairs.size(), 0);
-  pairsListed_ = false;
-  calm_.clear();
-  lively_.clear();
-  pairs_.clear();
-  // Some at a time: the second look finds them in the cache.
-  for (std::size_t k = 0; k < pairs.size(); k += kTogether) {
-    const std::size_t end = std::min(k + kTogether, pairs.size());
-    sortPairs(broad, k, end, slow, dt);
-    takePairs(bodies, broad, k, end);
-  }
-  for (SolvedContact& contact : lively_) contact.total = contact.approach = 0;
-  dropped_.assign(calm_.size(), 0);
-}
-
-void NarrowPhase::sortPairs(BroadPhase& broad, std::size_t begin, std::size_t end, double slow, double dt) {
-  due_.clear();
-  for (std::size_t k = begin; k < end; ++k) {
-    BodyPair& pair = broad.pairs()[k];
-    const Seen &a = seen_[pair.key.a], &b = seen_[pair.key.b];
-    const double way = relativeWay(a, b, dt);
-    if (movesFast(a, b, way, slow, dt)) {
-      livelyPair_[k] = 1;
-      makeLively(pair.key, static_cast<int>(k), memory_.data() + pair.first, pair.count);
-    } else if (!mayKeep(a, b, pair, broad.shiftOf(pair.key), way)) {
-      due_.push_back(static_cast<int>(k));
-    }
-  }
-}
-
-void NarrowPhase::takePairs(const Bodies& bodies, BroadPhase& broad, std::size_t begin, std::size_t end) {
-  auto& pairs = broad.pairs();
-  std::size_t next = 0;
-  for (std::size_t k = begin; k < end; ++k) {
-    BodyPair& pair = pairs[k];
-    const std::size_t first = calm_.size();
-    if (next < due_.size() && due_[next] == static_cast<int>(k)) {
-      askAhead(
-          next, [&](int due) { return pairs[due].key; }, bodies);
-      ++next;
-      const Vec2 shift = broad.shiftOf(pair.key);
-      double clear = clearance(bodies, pair.key, shift, 2 * pair.margin);
-      if (clear <= pair.margin)
-        clear = finder_.find(bodies, pair.key, shift, pair.margin, h_, false, calm_, {});
-      for (std::size_t c = first; c < calm_.size(); ++c)
-        inheritImpulses(memory_.data() + pair.first, pair.count,
-                        kSamePlace * thinner(bodies, pair.key.a, pair.key.b), calm_[c]);
-      pair.apart = clear >= pair.margin;
-      pair.follows = std::all_of(calm_.begin() + static_cast<std::ptrdiff_t>(first), calm_.end(),
-                                 [](const Contact& c) { return c.face > 0; });
-      pair.margin = std::max(pair.margin, clear);
-    } else if (!livelyPair_[k]) {
-      for (int c = 0; c < pair.count; ++c) {
-        Contact& kept = calm_.emplace_back(memory_[pair.first + c]);
-        if (bodies.surfacesChanged) setSurfaces(bodies, kept);
-        kept.total = kept.approach = 0;
-      }
-    }
-    pair.first = static_cast<int>(first);
-    pair.count = static_cast<int>(calm_.size() - first);
-  }
-}
-
-double NarrowPhase::relativeWay(const Seen& a, const Seen& b, double dt) {
-  return (length(a.velocity - b.velocity) + std::abs(a.turn) * a.turningReach +
-          std::abs(b.turn) * b.turningReach) *
-         dt;
-}
-
-bool NarrowPhase::movesFast(const Seen& a, const Seen& b, double way, double slow, double dt) {
-  const double thin = std::min(a.thinnest, b.thinnest);
-  const double sunk = std::min(a.sunk, b.sunk);
-  if (sunk > 0) return way > kCalm * thin + sunk;
-  const bool bounces = a.bounces || b.bounces;
-  const double turn = std::max(std::abs(a.turn), std::abs(b.turn)) * dt;
-  return ((a.pushes || b.pushes) && way > kReuse * thin) ||
-         way > (bounces ? std::clamp(slow, kCalmBouncing * thin, kCalm * thin) : kCalm * thin) ||
-         (way > kCalmTurning * thin && turn > kCalmTurn);
-}
-
-bool NarrowPhase::mayKeep(const Seen& a, const Seen& b, BodyPair& pair, Vec2 shift, double way) const {
-  const double thin = std::min(a.thinnest, b.thinnest);
-  const double margin = way + a.room + b.room;
-  const Vec2 between = b.position + shift - a.position;
-  const double turnedA = std::abs(a.angleRad - pair.angleA), turnedB = std::abs(b.angleRad - pair.angleB);
-  const double since = length(between - pair.between) + turnedA * a.turningReach + turnedB * b.turningReach;
-  const double sunk = kReuseSunk * std::min(a.sunk, b.sunk);
-  const bool same = (since <= kReuse * thin && std::max(turnedA, turnedB) <= kReuseTurn) ||
-                    (since <= kReuseFollowing * thin && pair.follows) || since <= sunk;
-  if ((pair.apart || same) && margin + since <= pair.margin) return true;
-  pair.margin = margin + 2 * kReuseFollowing * thin + sunk;
-  pair.between = between;
-  pair.angleA = a.angleRad;
-  pair.angleB = b.angleRad;
-  return false;
-}
-
-template <class KeyOf>
-void NarrowPhase::askAhead(std::size_t at, KeyOf&& keyOf, const Bodies& bodies) const {
-  constexpr std::size_t kLong = 8, kSoon = 4;
-  for (const std::size_t ahead : {kLong, kSoon}) {
-    if (at + ahead >= due_.size()) continue;
-    const PairKey key = keyOf(due_[at + ahead]);
-    PairContacts::prefetch(bodies, key.a, ahead == kSoon);
-    PairContacts::prefetch(bodies, key.b, ahead == kSoon);
-  }
-}
 
 void NarrowPhase::makeLively(const PairKey& key, int pair, const Contact* old, int count) {
   LivelyPair made{key, static_cast<int>(lively_.size()), count, false, -1, pair};
   for (int k = 0; k < count; ++k) lively_.emplace_back(old[k]);
   pairs_.push_back(made);
-}
-
-// Those in which a body is the first one lie side by side as they are.
-void NarrowPhase::listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs) {
-  pairsOfFirst_.assign(bodies.count() + 1, 0);
-  pairsOfSecond_.assign(bodies.count() + 2, 0);
-  for (const BodyPair& pair : pairs) {
-    ++pairsOfFirst_[pair.key.a + 1];
-    ++pairsOfSecond_[pair.key.b + 2];
-  }
-  for (int b = 0; b < bodies.count(); ++b) {
-    pairsOfFirst_[b + 1] += pairsOfFirst_[b];
-    pairsOfSecond_[b + 2] += pairsOfSecond_[b + 1];
-  }
-  pairsAt_.resize(pairs.size());
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    pairsAt_[pairsOfSecond_[pairs[k].key.b + 1]++] = static_cast<int>(k);
-  pairsListed_ = true;
 }
 
 bool NarrowPhase::isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, double h) {
@@ -257,21 +57,36 @@ void NarrowPhase::refresh(const Bodies& bodies, const BroadPhase& broad, double 
 
 void NarrowPhase::refreshNew(const Bodies& bodies, const BroadPhase& broad, double h,
                              const std::vector<double>* since) {
+  const int all = static_cast<int>(pairs_.size());
+  pool_.blocks(refreshed_, all, kTogether, [&](int k, int end) {
+    for (; k < end; ++k) pairs_[k].due = isDue(pairs_[k], bodies, broad.shiftOf(pairs_[k].key), h);
+  });
   due_.clear();
-  for (; refreshed_ < pairs_.size(); ++refreshed_) {
-    LivelyPair& pair = pairs_[refreshed_];
-    if (isDue(pair, bodies, broad.shiftOf(pair.key), h)) due_.push_back(static_cast<int>(refreshed_));
-  }
-  for (std::size_t k = 0; k < due_.size(); ++k) {
-    askAhead(
-        k, [&](int due) { return pairs_[due].key; }, bodies);
-    LivelyPair& pair = pairs_[due_[k]];
-    const double later = since ? std::max((*since)[pair.key.a], (*since)[pair.key.b]) : 0;
-    next_.clear();
-    const double clear = finder_.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h, pair.swept,
-                                      next_, {later, {}, {}});
-    pair.clear = !next_.empty() && !pair.swept ? pair.reuse : clear - pair.near;
-    replace(pair, bodies);
+  for (; refreshed_ < all; ++refreshed_)
+    if (pairs_[refreshed_].due) due_.push_back(refreshed_);
+  if (parts_.size() < due_.size() / kDue + 1) parts_.resize(due_.size() / kDue + 1);
+  const int due = static_cast<int>(due_.size());
+  pool_.blocks(0, due, kDue, [&](int at, int end) {
+    Part& part = parts_[at / kDue];
+    part.found.clear();
+    for (; at < end; ++at) {
+      PairContacts::askAhead(bodies, at, due_.size(), [&](std::size_t k) { return pairs_[due_[k]].key; });
+      LivelyPair& pair = pairs_[due_[at]];
+      const std::size_t first = part.found.size();
+      const double later = since ? std::max((*since)[pair.key.a], (*since)[pair.key.b]) : 0;
+      const double clear = part.finder.find(bodies, pair.key, broad.shiftOf(pair.key), pair.near, h,
+                                            pair.swept, part.found, {later, {}, {}});
+      pair.found = static_cast<int>(part.found.size() - first);
+      pair.clear = pair.found > 0 && !pair.swept ? pair.reuse : clear - pair.near;
+    }
+  });
+  for (int at = 0; at < due; at += kDue) {
+    Contact* found = parts_[at / kDue].found.data();
+    for (int k = at; k < std::min(at + kDue, due); ++k) {
+      LivelyPair& pair = pairs_[due_[k]];
+      replace(pair, bodies, found, pair.found);
+      found += pair.found;
+    }
   }
 }
 
@@ -308,7 +123,7 @@ void NarrowPhase::refreshAfterImpacts(const Bodies& bodies, const BroadPhase& br
     if (clearance(bodies, pair.key, broad.shiftOf(pair.key), reach + way) <= reach + way)
       finder_.find(bodies, pair.key, broad.shiftOf(pair.key), margin, h, pair.swept, next_,
                    {std::max(struckAt[a], struckAt[b]), struck[a], struck[b]});
-    replace(pair, bodies);
+    replace(pair, bodies, next_.data(), static_cast<int>(next_.size()));
   }
 }
 
@@ -320,11 +135,10 @@ void NarrowPhase::dropContacts(const LivelyPair& pair) {
   }
 }
 
-/// Puts what is in next_ into the place of a pair's contacts, or behind all others.
-void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
-  const int count = static_cast<int>(next_.size());
+/// Puts the contacts that were found in the place of a pair's, or behind all others.
+void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies, Contact* found, int count) {
   const double near = kSamePlace * thinner(bodies, pair.key.a, pair.key.b);
-  for (Contact& contact : next_) inheritImpulses(lively_.data() + pair.first, pair.count, near, contact);
+  for (int k = 0; k < count; ++k) inheritImpulses(lively_.data() + pair.first, pair.count, near, found[k]);
   dropContacts(pair);
   if (count > pair.count) {
     pair.first = static_cast<int>(lively_.size());
@@ -332,97 +146,9 @@ void NarrowPhase::replace(LivelyPair& pair, const Bodies& bodies) {
   }
   pair.count = count;
   for (int k = 0; k < count; ++k) {
-    SolvedContact& contact = lively_[pair.first + k] = SolvedContact(next_[k]);
+    SolvedContact& contact = lively_[pair.first + k] = SolvedContact(found[k]);
     setMasses(bodies, contact);
   }
-}
-
-bool NarrowPhase::findLeaving(const Bodies& bodies, const std::vector<Motion>* struck, double timeLeft) {
-  const double later = timeLeft > 1.5 * h_ ? 1 : 0;
-  const double h = h_, elapsed = elapsed_;
-  const auto on = [&](int b) {
-    const Lanes by = h * load(&bodies.velocity[b].x) - h * load(&expected_[b].velocity.x);
-    return struck ? by + load(&(*struck)[b].x) : by;
-  };
-  const auto off = [&](int b, Lanes by) {
-    return load(&bodies.moved[b].x) + by - elapsed * load(&expected_[b].velocity.x);
-  };
-  // Most are far from leaving; who is not is put down first, which takes no guess at what comes next.
-  leaving_.resize(bodies.count());
-  int count = 0;
-  for (int b = 0; b < bodies.count(); ++b) {
-    const Lanes by = on(b), now = off(b, by), then = now + later * by;
-    const Lanes p = now * now, q = then * then;
-    leaving_[count] = b;
-    count += anyOf((p > q ? p : q) > load(&expected_[b].within.x)) ? 1 : 0;
-  }
-  leaving_.resize(count);
-  bool any = false;
-  std::erase_if(leaving_, [&](int b) {
-    const Room& room = rooms_[b];
-    const auto leaves = [&](Lanes by) {
-      const double left = room.limit - std::abs(by[2]) * room.reach;
-      return left < 0 || std::abs(by[2]) > room.turn || by[0] * by[0] + by[1] * by[1] > left * left;
-    };
-    const Lanes by = on(b), now = off(b, by);
-    const bool leavesNow = leaves(now);
-    any |= leavesNow;
-    return !leavesNow && !leaves(now + later * by);
-  });
-  return any;
-}
-
-NarrowPhase::Stir NarrowPhase::stir(const Bodies& bodies, const std::vector<Motion>* struck,
-                                    BroadPhase& broad, Vec2 gravity, ContactBlocks& blocks, double timeLeft) {
-  turned_.clear();
-  auto wayOf = [&](int b) -> Motion {
-    const Motion &v = bodies.velocity[b], by = struck ? (*struck)[b] : Motion{};
-    return {by.x + h_ * v.x, by.y + h_ * v.y, by.turn + h_ * v.turn};
-  };
-  bool now = false;
-  // Those whose pairs are lively already: does the box still hold the way?
-  for (const int b : stirred_) {
-    const Motion& v = bodies.velocity[b];
-    const Vec2 changed = v.linear() - expected_[b].velocity.linear();
-    const double room = rooms_[b].room, slack = 0.5 * room / timeLeft;
-    if (dot(changed, changed) <= slack * slack) continue;
-    now |= length(changed) * h_ > 0.5 * room;
-    expected_[b].velocity = v;
-    turned_.push_back(b);
-  }
-  now |= findLeaving(bodies, struck, timeLeft);
-  for (const int b : leaving_) {
-    expected_[b].velocity = bodies.velocity[b];
-    setLimit(b, kNoBound, kNoBound);
-    stirred_.push_back(b);
-  }
-  if (leaving_.empty() && turned_.empty()) return Stir::none;
-  bool any = false;
-  const auto& pairs = broad.pairs();
-  if (!pairsListed_) listPairs(bodies, pairs);
-  const auto enliven = [&](int k) {
-    if (std::exchange(livelyPair_[k], 1)) return;
-    any = true;
-    const BodyPair& pair = pairs[k];
-    for (int c = pair.first; c < pair.first + pair.count; ++c) {
-      blocks.drop(c, calm_[c]);
-      dropped_[c] = 1;
-    }
-    makeLively(pair.key, k, calm_.data() + pair.first, pair.count);
-  };
-  for (const int body : leaving_) {
-    for (int at = pairsOfSecond_[body]; at < pairsOfSecond_[body + 1]; ++at) enliven(pairsAt_[at]);
-    for (int k = pairsOfFirst_[body]; k < pairsOfFirst_[body + 1]; ++k) enliven(k);
-  }
-  late_.clear();
-  leaving_.insert(leaving_.end(), turned_.begin(), turned_.end());
-  for (const int b : leaving_) way_[b] = wayOf(b);
-  broad.extend(bodies, leaving_, way_, gravity, timeLeft, late_);
-  for (const PairKey& key : late_) {
-    makeLively(key, -1, nullptr, 0);
-    any = true;
-  }
-  return !any ? Stir::none : now ? Stir::now : Stir::later;
 }
 
 bool NarrowPhase::mayPass(const Bodies& bodies, double h) const {

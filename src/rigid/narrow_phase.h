@@ -5,8 +5,10 @@
 // way that was expected of it, are looked at anew in every sub-step (lively contacts); those that could pass
 // through each other within a sub-step by a swept test.
 #pragma once
+#include <limits>
 #include <vector>
 
+#include "base/threads.h"
 #include "rigid/broad_phase.h"
 #include "rigid/contact.h"
 #include "rigid/contact_blocks.h"
@@ -18,6 +20,7 @@ namespace smokebox {
 
 class NarrowPhase {
  public:
+  explicit NarrowPhase(ThreadPool& pool) : pool_(pool) {}
   /// Sorts the pairs into calm and lively, and finds the calm contacts for a step of `dt`.
   void beginStep(const Bodies& bodies, BroadPhase& broad, const Press& press, Vec2 gravity, double dt,
                  int subSteps);
@@ -59,6 +62,11 @@ class NarrowPhase {
   std::size_t bytes() const;
 
  private:
+  static constexpr int kTogether = 256;  // pairs that a thread looks at, at a time
+  static constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  /// Where both are sunk, contacts are found anew once they have moved by this share of what they may stray
+  /// for that.
+  static constexpr double kReuseSunk = 0.5;
   struct LivelyPair {
     PairKey key;
     int first = 0, count = 0;    // in lively_
@@ -66,6 +74,8 @@ class NarrowPhase {
     double clear = -1;           // what was found holds until they have moved so far against each other, m
     int pair = -1;               // in the broad phase's list; -1: found within the step
     double near = 0, reuse = 0;  // what is looked for, and how long that holds then, m
+    bool due = false;            // is to be looked at in this sub-step
+    int found = 0;               // contacts, then
   };
   /// What is expected of a body's way, as all are looked at in each sub-step.
   struct Expected {
@@ -83,7 +93,6 @@ class NarrowPhase {
   /// Puts into leaving_ who leaves in this sub-step or in the next one; does any in this one?
   bool findLeaving(const Bodies& bodies, const std::vector<Motion>* struck, double timeLeft);
   void listPairs(const Bodies& bodies, const std::vector<BodyPair>& pairs);
-  void replace(LivelyPair& pair, const Bodies& bodies);
   void makeLively(const PairKey& key, int pair, const Contact* old, int count);
   /// What is asked of a body at the step's start for each of its pairs, side by side in a line of the cache:
   /// where a bound is enough, in float32.
@@ -98,10 +107,20 @@ class NarrowPhase {
     bool pushes = false;  // moves, and nothing moves it
   };
   static_assert(sizeof(Seen) == 64);
-  /// Of the pairs begin to end: which are lively, and which of the others are due to be looked at anew ...
-  void sortPairs(BroadPhase& broad, std::size_t begin, std::size_t end, double slow, double dt);
-  /// ... and the calm ones' contacts, found or kept.
-  void takePairs(const Bodies& bodies, BroadPhase& broad, std::size_t begin, std::size_t end);
+  /// What a thread finds of some pairs: those that are due to be looked at anew and their contacts, one
+  /// pair's after the other's; those that are lively.
+  struct Part {
+    std::vector<int> due, lively;
+    std::vector<Contact> found;
+    int contacts = 0, first = 0;  // calm ones of them all, and where they begin
+    PairContacts finder;
+  };
+  /// Of the pairs begin to end: which are lively, which are due ...
+  void sortPairs(Part& part, BroadPhase& broad, int begin, int end, double slow, double dt);
+  /// ... the contacts of those ...
+  void findDue(Part& part, const Bodies& bodies, BroadPhase& broad);
+  /// ... and all the calm ones, found or kept, at their places.
+  void takePairs(const Part& part, const Bodies& bodies, std::vector<BodyPair>& pairs, int begin, int end);
   static double relativeWay(const Seen& a, const Seen& b, double dt);
   /// Do the bodies of a pair move too much in a step for what was found at its start?
   static bool movesFast(const Seen& a, const Seen& b, double way, double slow, double dt);
@@ -110,15 +129,13 @@ class NarrowPhase {
   /// Is a lively pair to be looked at in this sub-step?
   bool isDue(LivelyPair& pair, const Bodies& bodies, Vec2 shift, double h);
   void dropContacts(const LivelyPair& pair);
-  /// Asks the memory for what finding the contacts of the next ones in due_ will read.
-  template <class KeyOf>
-  void askAhead(std::size_t at, KeyOf&& keyOf, const Bodies& bodies) const;
+  void replace(LivelyPair& pair, const Bodies& bodies, Contact* found, int count);
 
   std::vector<Contact> calm_, next_, memory_;
   std::vector<SolvedContact> lively_;
   std::vector<char> dropped_;
   std::vector<LivelyPair> pairs_;
-  std::size_t refreshed_ = 0;  // so many of them have been looked at in this sub-step
+  int refreshed_ = 0;  // so many of them have been looked at in this sub-step
   std::vector<Expected> expected_;
   std::vector<Room> rooms_;
   std::vector<Seen> seen_;
@@ -129,13 +146,16 @@ class NarrowPhase {
   std::vector<int> pairsOfFirst_, pairsOfSecond_, pairsAt_;
   bool pairsListed_ = false;
   PairContacts finder_;
-  std::vector<int> due_;  // pairs whose contacts are to be found
+  std::vector<int> due_;  // lively pairs whose contacts are to be found
+  std::vector<Part> parts_;
   std::vector<PairKey> late_, swept_;
   Passing passing_;
   std::vector<int> leaving_, turned_, crushed_;
+  std::vector<int> leavingOf_;      // so many of each part of the bodies
   std::vector<double> crushSpeed_;  // by crushed body
   std::vector<int> crushedAt_;      // in crushed_, by body; -1: it is not
   double elapsed_ = 0, h_ = 0;
+  ThreadPool& pool_;
 };
 
 }  // namespace smokebox

@@ -11,6 +11,8 @@
 
 namespace smokebox {
 
+/// A point that has moved by less than this share of the thinner one's width goes on where another one was.
+constexpr double kSamePlace = 0.1;
 /// Cosine between the normals of two contacts of which one goes on where the other was.
 constexpr double kSameWay = 0.7;
 
@@ -78,10 +80,22 @@ class PairContacts {
   double find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h, bool swept,
               std::vector<Contact>& found, const Later& later);
 
-  /// Asks the memory for what find() will read of a body of one piece: long before, and soon before.
-  static void prefetch(const Bodies& bodies, int body, bool soon);
+  /// Asks the memory for what find() will read of the next ones of `count` pairs; keyOf(k) is the k-th's.
+  template <class KeyOf>
+  static void askAhead(const Bodies& bodies, std::size_t at, std::size_t count, KeyOf&& keyOf) {
+    constexpr std::size_t kLong = 8, kSoon = 4;
+    for (const std::size_t ahead : {kLong, kSoon}) {
+      if (at + ahead >= count) continue;
+      const PairKey key = keyOf(at + ahead);
+      prefetch(bodies, key.a, ahead == kSoon);
+      prefetch(bodies, key.b, ahead == kSoon);
+    }
+  }
 
  private:
+  /// Of a body of one piece: long before, and soon before.
+  static void prefetch(const Bodies& bodies, int body, bool soon);
+
   std::vector<PiecePair> pieces_;
 };
 

@@ -33,6 +33,14 @@ struct RigidSystem::State {
   /// What follows from the bodies' definitions alone.
   void takeCensus();
   void startVelocities(double h);
+  /// todo(body) for all but the walls, by several threads: it must touch that body alone.
+  template <class Todo>
+  void eachBody(Todo&& todo) {
+    constexpr int kGrain = 2048;
+    pool.blocks(kWalls, bodies.count(), kGrain, [&](int b, int end) {
+      for (; b < end; ++b) todo(b);
+    });
+  }
   void findAhead(int body, double h);
   void giveBackSpare();
   void setInverse(int body);

@@ -23,7 +23,13 @@ constexpr double kForce = 4;
 }  // namespace
 
 RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads)
-    : walls(bounds), gravity(pull), method(how), pool(threads), broad(bounds) {
+    : walls(bounds),
+      gravity(pull),
+      method(how),
+      pool(threads),
+      broad(bounds),
+      narrow(threads),
+      blocks(threads) {
   constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
   bodies.period = {bounds.width, bounds.height};
   edge = kEdge * bodies.period;
@@ -208,10 +214,10 @@ Lanes RigidSystem::State::drivenBy(int body, Lanes velocity) const {
 void RigidSystem::State::predict(double h) {
   if (carried != Carried::all) {  // else the last sub-step has done it
     remember(h, timeLeft);
-    for (int b = kWalls; b < bodies.count(); ++b) {
+    eachBody([&](int b) {
       double* v = &bodies.velocity[b].x;
       store(v, drivenBy(b, load(v)));
-    }
+    });
   }
   narrow.refresh(bodies, broad, h, nullptr);
 }
@@ -282,18 +288,18 @@ bool RigidSystem::State::meetsFast(const Contact& contact, double h) const {
 void RigidSystem::State::moveOn(double h) {
   const bool mayPass = narrow.mayPass(bodies, h);
   if (mayPass) {
-    for (int b = kWalls; b < bodies.count(); ++b) store(&way[b].x, h * load(&bodies.velocity[b].x));
+    eachBody([&](int b) { store(&way[b].x, h * load(&bodies.velocity[b].x)); });
     narrow.stopPassing(bodies, broad, h, anyStruck ? &impact.moments() : nullptr, way);
   }
   const std::vector<Motion>& by = mayPass ? way : bodies.velocity;
   const double times = mayPass ? 1 : h;
   const auto each = [&](auto&& carry) {
-    for (int b = kWalls; b < bodies.count(); ++b) {
+    eachBody([&](int b) {
       const Lanes v = load(&bodies.velocity[b].x), added = v - load(&start[b].x);
       store(&bodies.moved[b].x, load(&bodies.moved[b].x) + times * load(&by[b].x));
       if (!isInside(b)) keepInside(b);
       carry(b, added);
-    }
+    });
   };
   if (carried == Carried::all) {
     remember(h, timeLeft - h);
