@@ -102,18 +102,24 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
   refitted_.assign(count, 0);
   bool listChanged = false;
   long moved = 0;
+  constexpr char kNew = 2;
+  constexpr int kGrain = 512;
+  pool_.blocks(0, count, kGrain, [&](int b, int end) {
+    for (; b < end; ++b) {
+      const bool was = listed_[b];
+      if (bodies.there[b] && fit(bodies, b, gravity, dt)) refitted_[b] = was ? 1 : kNew;
+    }
+  });
   for (int b = 0; b < count; ++b) {
     if (!bodies.there[b]) {
       listChanged |= listed_[b] != 0;
       refitted_[b] = listed_[b];
       listed_[b] = 0;
-      continue;
+    } else if (refitted_[b]) {
+      ++moved;
+      listChanged |= refitted_[b] == kNew;
+      refitted_[b] = 1;
     }
-    const bool was = listed_[b];
-    if (!fit(bodies, b, gravity, dt)) continue;
-    refitted_[b] = 1;
-    ++moved;
-    listChanged |= !was;
   }
   sinceBuild_ += moved;
   if (listChanged || sinceBuild_ > kRebuild * count) {

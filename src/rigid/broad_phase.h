@@ -5,6 +5,7 @@
 #include <compare>
 #include <vector>
 
+#include "base/threads.h"
 #include "rigid/bodies.h"
 #include "rigid/box_tree.h"
 
@@ -33,7 +34,7 @@ static_assert(sizeof(BodyPair) == 64);
 
 class BroadPhase {
  public:
-  explicit BroadPhase(const RigidWalls& walls) : walls_(walls) {}
+  BroadPhase(const RigidWalls& walls, ThreadPool& pool) : walls_(walls), pool_(pool) {}
 
   /// Brings pairs() up to date for a step of `dt`.
   void update(const Bodies& bodies, Vec2 gravity, double dt);
@@ -58,6 +59,7 @@ class BroadPhase {
   void searchAll(const Bodies& bodies, long moved, std::vector<PairKey>& found);
 
   RigidWalls walls_;
+  ThreadPool& pool_;
   std::vector<Box> fat_;
   std::vector<char> listed_, refitted_;  // by body
   BoxTree tree_;

@@ -37,34 +37,37 @@ void NarrowPhase::beginStep(const Bodies& bodies, BroadPhase& broad, const Press
   seen_.resize(count);
   stirred_.clear();
   way_.resize(count);
-  for (int b = 0; b < count; ++b) {
-    const Motion& v = bodies.velocity[b];
-    const bool moves = bodies.there[b] && bodies.moves(b);
-    const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
-    const Extent& extent = bodies.extent[b];
-    const double stray = std::min(kStray * extent.thinnest + kStrayOnWay * dt * length(v.linear()),
-                                  kStrayMost * extent.thinnest);
-    const double sunk = moves ? kStraySunk * press.sunk(b) : 0;
-    const double room = moves ? fall + stray + sunk : 0;
-    expected_[b].velocity = v;
-    rooms_[b] = {room, 0, 0, extent.turningReach()};
-    if (moves)
-      setLimit(b, room, sunk > 0 ? kStrayTurnSunk : kStrayTurn);
-    else
-      setLimit(b, kNoBound, kNoBound);
-    const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
-    Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
-    seen.position = bodies.position[b];
-    seen.velocity = v.linear();
-    seen.angleRad = bodies.angleRad[b];
-    seen.turn = static_cast<float>(v.turn);
-    seen.thinnest = static_cast<float>(extent.thinnest);
-    seen.turningReach = static_cast<float>(extent.turningReach());
-    seen.room = static_cast<float>(room);
-    seen.sunk = static_cast<float>(sunk);
-    seen.bounces = bodies.surface[b].bounce > 0;
-    seen.pushes = isMoving && !bodies.moves(b);
-  }
+  constexpr int kBodies = 512;
+  pool_.blocks(0, count, kBodies, [&](int b, int end) {
+    for (; b < end; ++b) {
+      const Motion& v = bodies.velocity[b];
+      const bool moves = bodies.there[b] && bodies.moves(b);
+      const double fall = length(gravity) * std::abs(bodies.surface[b].gravityScale) * dt * dt;
+      const Extent& extent = bodies.extent[b];
+      const double stray = std::min(kStray * extent.thinnest + kStrayOnWay * dt * length(v.linear()),
+                                    kStrayMost * extent.thinnest);
+      const double sunk = moves ? kStraySunk * press.sunk(b) : 0;
+      const double room = moves ? fall + stray + sunk : 0;
+      expected_[b].velocity = v;
+      rooms_[b] = {room, 0, 0, extent.turningReach()};
+      if (moves)
+        setLimit(b, room, sunk > 0 ? kStrayTurnSunk : kStrayTurn);
+      else
+        setLimit(b, kNoBound, kNoBound);
+      const bool isMoving = v.x != 0 || v.y != 0 || v.turn != 0;
+      Seen& seen = seen_[b];  // number by number: a whole one would be read before it is written
+      seen.position = bodies.position[b];
+      seen.velocity = v.linear();
+      seen.angleRad = bodies.angleRad[b];
+      seen.turn = static_cast<float>(v.turn);
+      seen.thinnest = static_cast<float>(extent.thinnest);
+      seen.turningReach = static_cast<float>(extent.turningReach());
+      seen.room = static_cast<float>(room);
+      seen.sunk = static_cast<float>(sunk);
+      seen.bounces = bodies.surface[b].bounce > 0;
+      seen.pushes = isMoving && !bodies.moves(b);
+    }
+  });
   auto& pairs = broad.pairs();
   livelyPair_.assign(pairs.size(), 0);
   pairsListed_ = false;

@@ -27,7 +27,7 @@ RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod
       gravity(pull),
       method(how),
       pool(threads),
-      broad(bounds),
+      broad(bounds, threads),
       narrow(threads),
       blocks(threads) {
   constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
@@ -426,25 +426,29 @@ void RigidSystem::State::endStep(double step) {
   };
   for (const SolvedContact& contact : narrow.lively()) count(contact, false);
   turned.resize(bodies.count());
-  for (int b = 0; b < bodies.count(); ++b) turned[b] = turnedBy({}, bodies.moved[b].turn);
+  eachBody([&](int b) { turned[b] = turnedBy({}, bodies.moved[b].turn); });
   calmTouches = static_cast<std::ptrdiff_t>(touches.size());
-  for (std::size_t k = 0; k < narrow.calm().size(); ++k) {
-    Contact& contact = narrow.calm()[k];
-    blocks.readBack(static_cast<int>(k), contact);
-    collectTouch(contact);
-    bringUpToDate(bodies, turned, contact);  // it may be used again
-    if (!narrow.isDropped(static_cast<int>(k))) count(contact, true);
-  }
+  constexpr int kContacts = 256;
+  const int calm = static_cast<int>(narrow.calm().size());
+  pool.blocks(0, calm, kContacts, [&](int k, int end) {
+    for (; k < end; ++k) blocks.readBack(k, narrow.calm()[k]);
+  });
+  for (const Contact& contact : narrow.calm()) collectTouch(contact);
+  pool.blocks(0, calm, kContacts, [&](int k, int end) {
+    for (; k < end; ++k) bringUpToDate(bodies, turned, narrow.calm()[k]);  // it may be used again
+  });
+  for (int k = 0; k < calm; ++k)
+    if (!narrow.isDropped(k)) count(narrow.calm()[k], true);
   if (pressing) press.end(bodies);
   narrow.endStep(broad);
   springs.endStep(bodies);
   joints.endStep(bodies);
   if (damped) bodies.inverse.swap(forImpacts);
 
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    if (!bodies.there[b]) continue;
+  eachBody([&](int b) {
+    if (!bodies.there[b]) return;
     findAhead(b, dt / method.subSteps);
-    const Motion &v = bodies.velocity[b], &m = bodies.moved[b];
+    const Motion& m = bodies.moved[b];
     if (bodies.surface[b].isDriven) {
       bodies.position[b] = targetPlace[b];
       bodies.angleRad[b] = targetAngle[b];
@@ -454,6 +458,10 @@ void RigidSystem::State::endStep(double step) {
     }
     if (m.turn != 0) bodies.turn[b] = turnBy(bodies.angleRad[b]);
     bodies.moved[b] = {};
+  });
+  for (int b = kWalls; b < bodies.count(); ++b) {
+    if (!bodies.there[b]) continue;
+    const Motion& v = bodies.velocity[b];
     if (!std::isfinite(bodies.position[b].x + bodies.position[b].y + bodies.angleRad[b] + v.x + v.y + v.turn))
       throw SimulationError("the motion of body " + std::to_string(b) + " is not a finite number");
     wrap(b);
