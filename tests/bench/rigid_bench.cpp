@@ -30,17 +30,26 @@ double cpuMs() {
 
 /// Both simulators with the same polygons: 3 to 8 corners, radius 0.2 to 0.4 m, in rows 0.9 m apart above a
 /// floor.
+struct BinCase {
+  int count = 0;
+  bool concave = false;  // every third a star
+  double bounce = 0;
+  bool withOther = false, otherSweeps = false;  // Box2D; with its swept tests
+  int threads = 1;                              // of ours
+};
+
 class Bin {
  public:
-  Bin(int count, bool concave, double bounce, bool sweeps)
-      : count_(count),
-        width_(std::sqrt(count) * 0.8),
-        world_(walls(count), {0, -10}),
+  explicit Bin(const BinCase& of)
+      : count_(of.count),
+        width_(std::sqrt(count_) * 0.8),
+        world_(walls(count_), {0, -10}, of.threads),
         other_(b2Vec2(0, -10)) {
+    const auto [count, concave, bounce, withOther, otherSweeps, threads] = of;
     other_.SetAllowSleeping(false);
-    other_.SetContinuousPhysics(sweeps);
+    other_.SetContinuousPhysics(otherSweeps);
     Dice dice(1);
-    if (!concave) addWalls(4 * std::sqrt(count) * 3);
+    if (withOther) addWalls(4 * std::sqrt(count) * 3);
     const int columns = static_cast<int>(width_ / 0.9);
     for (int k = 0; k < count; ++k) {
       const double x = 0.5 + k % columns * 0.9 + dice.between(-0.02, 0.02), y = 0.5 + k / columns * 0.9;
@@ -58,11 +67,11 @@ class Bin {
       def.friction = 0.6, def.bounce = bounce;
       world_.add(def);
       size_ += 2 * radius / count;
-      if (!concave) addOther(polygon.points, {x, y}, bounce);
+      if (withOther) addOther(polygon.points, {x, y}, bounce);
     }
   }
 
-  /// One frame of each; nothing of Box2D where there are concave bodies.
+  /// One frame of each.
   std::array<double, 2> frame() {
     const double start = cpuMs();
     world_.steps(1);
@@ -70,6 +79,7 @@ class Bin {
     if (other_.GetBodyCount() > 0) other_.Step(static_cast<float>(kStep), 8, 3);
     return {middle - start, cpuMs() - middle};
   }
+  void steps(int count) { world_.steps(count); }
   double overlap() const { return world_.system.totals().overlap / size_; }
   double bytesPerBody() const { return static_cast<double>(world_.system.bytes()) / count_; }
 
@@ -123,7 +133,7 @@ void BM_RigidBin(benchmark::State& state) {
   const bool concave = state.range(1) != 0;
   for (auto _ : state) {
     const bool sweeps = state.range(3) != 0;
-    Bin bin(count, concave, 0.1 * static_cast<double>(state.range(2)), sweeps);
+    Bin bin({count, concave, 0.1 * static_cast<double>(state.range(2)), !concave, sweeps});
     double ms[3][2] = {};  // falling, settled, all; ours, Box2D
     int frames[3] = {};
     double overlap = 0;
@@ -153,6 +163,18 @@ void BM_RigidBin(benchmark::State& state) {
     state.counters["overlap"] = overlap;
     if (!concave) state.counters["ratio"] = ms[2][0] / ms[2][1];
   }
+}
+
+/// Seven seconds of ours alone; range: bodies, threads. How the time grows with the number of bodies.
+void BM_RigidBinGrowth(benchmark::State& state) {
+  constexpr int kFrames = 420;
+  for (auto _ : state) {
+    state.PauseTiming();
+    Bin bin({static_cast<int>(state.range(0)), false, 0, false, false, static_cast<int>(state.range(1))});
+    state.ResumeTiming();
+    bin.steps(kFrames);
+  }
+  state.counters["frames"] = benchmark::Counter(kFrames, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 /// Two polygons of range(0) corners each, one at rest on the other; round, or with teeth (1).
@@ -188,6 +210,12 @@ BENCHMARK(BM_RigidBin)
     ->Args({10000, 1, 0, 0})
     ->Iterations(1)
     ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_RigidBinGrowth)
+    ->ArgNames({"bodies", "threads"})
+    ->ArgsProduct({{1000, 10000}, {1, 2}})
+    ->Iterations(1)
+    ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_RigidManyCorners)
     ->ArgNames({"corners", "teeth"})
