@@ -10,11 +10,15 @@ namespace {
 struct OutlineChoice {
   Manifold manifold, fallback;
   double separation = -1e300, fallbackSeparation = -1e300;
+  bool inNotch = false;
 };
 
 void chooseOutline(const Side& side, const Frame& referenceInOther, double margin, OutlineChoice& choice) {
   const ConvexPiece &p = side.reference, &q = side.other;
   const int n = static_cast<int>(p.normals.size());
+  // A corner that sinks in at the bottom of a notch is behind both edges there, whichever piece it is in.
+  constexpr double kShallow = 0.5;
+  const double shallow = std::min(margin, kShallow * std::min(p.within, q.within));
   int at = 0;
   for (int k = 0; k < n; ++k) {
     if (p.inner[k]) continue;
@@ -24,10 +28,13 @@ void chooseOutline(const Side& side, const Frame& referenceInOther, double margi
     if (separation <= choice.separation) continue;
     Manifold manifold;
     if (!faceOnOutline(side, k, at, margin, manifold)) continue;
-    const bool crossed = separation > 0 || meets(q, toWorld(referenceInOther, p.points[k]),
-                                                 toWorld(referenceInOther, p.points[next(p, k)]));
+    const bool inNotch = separation > -shallow && (isNotch(p, k) || isNotch(p, next(p, k)));
+    const bool crossed =
+        separation > 0 || inNotch ||
+        meets(q, toWorld(referenceInOther, p.points[k]), toWorld(referenceInOther, p.points[next(p, k)]));
     if (crossed) {
       choice.separation = separation;
+      choice.inNotch = inNotch;
       choice.manifold = manifold;
     } else if (separation > choice.fallbackSeparation) {
       choice.fallbackSeparation = separation;
@@ -63,7 +70,7 @@ bool collideOutlines(const Side& ab, const Side& ba, double separation, double m
   constexpr double kFar = 10, kSwallowed = 0.2;
   const bool found = choice.manifold.count > 0;
   const bool swallowed = separation < -kSwallowed * std::min(ab.reference.reach, ba.reference.reach);
-  if (found && choice.separation >= std::min(0.0, kFar * separation)) {
+  if (found && (choice.inNotch || choice.separation >= std::min(0.0, kFar * separation))) {
     manifold = choice.manifold;
     return true;
   }

@@ -82,6 +82,13 @@ void cornerOnFace(const Side& side, int k, int corner, Manifold& manifold) {
 
 namespace {
 
+/// May something touch the line of edge `k`, which is of `size`, where it is `along`, beyond an end of it? It
+/// may next to a notch: it touches the edge that follows there, and the least that it moves takes it back.
+bool isNextToNotch(const ConvexPiece& piece, int k, double along, double size, double margin) {
+  if (along < 0) return -along <= margin && isNotch(piece, k);
+  return along - size <= margin && isNotch(piece, next(piece, k));
+}
+
 /// Edge `incident` of the other piece clipped to edge `k` of the reference; points farther than `margin` are
 /// left out.
 bool clipToFace(const Side& side, int k, int incident, double margin, Manifold& manifold) {
@@ -96,14 +103,18 @@ bool clipToFace(const Side& side, int k, int incident, double margin, Manifold& 
     x[e] = dot(along, at[e] - from);
   }
   manifold.count = 0;
-  const double slack = 1e-9 * (p.reach + q.reach);
-  if (std::max(x[0], x[1]) < -slack || std::min(x[0], x[1]) > size + slack) return false;
-  const double reach = margin + p.radius + q.radius;
+  const double slack = 1e-9 * (p.reach + q.reach), reach = margin + p.radius + q.radius;
+  const auto isBeyond = [&](int e) {
+    return (x[e] < -slack || x[e] > size + slack) && !isNextToNotch(p, k, x[e], size, margin);
+  };
   for (int e = 0; e < 2; ++e) {
     Vec2 point = at[e];
     std::uint32_t feature = featureOf(side, k, ends[e], false);
-    if (x[e] < -slack || x[e] > size + slack) {
-      const double share = std::clamp(((x[e] < 0 ? 0 : size) - x[e]) / (x[1 - e] - x[e]), 0.0, 1.0);
+    if (isBeyond(e)) {
+      const double end = x[e] < 0 ? 0 : size;
+      const double other = x[e] < 0 ? -x[1 - e] : x[1 - e] - size;
+      if (other > slack) continue;  // all of it is beyond
+      const double share = std::clamp((end - x[e]) / (x[1 - e] - x[e]), 0.0, 1.0);
       point = at[e] + share * (at[1 - e] - at[e]);
       feature = featureOf(side, x[e] < 0 ? k : next(p, k), incident, true);
     }
@@ -135,8 +146,10 @@ bool faceOnOutline(const Side& side, int k, int supported, double margin, Manifo
   if (best >= 0) return clipToFace(side, k, best, margin, manifold);
   if (!touchable) return false;
   const Vec2 at = toWorld(side.otherInReference, q.points[supported]);
-  const Vec2 from = side.reference.points[k], to = side.reference.points[next(side.reference, k)];
-  if (dot(at - from, to - from) < 0 || dot(at - to, to - from) > 0) return false;
+  const ConvexPiece& p = side.reference;
+  const Vec2 from = p.points[k], way = perpendicular(side.reference.normals[k]);
+  const double along = dot(way, at - from), size = dot(way, p.points[next(p, k)] - from);
+  if ((along < 0 || along > size) && !isNextToNotch(p, k, along, size, margin)) return false;
   cornerOnFace(side, k, supported, manifold);
   return manifold.points[0].gap <= margin;
 }

@@ -80,6 +80,11 @@ inline int edgeFacing(const ConvexPiece& piece, int k, Vec2 direction) {
 /// May something touch corner `k` with the outward normal `direction`? Always if the piece is the whole body.
 bool inCone(const ConvexPiece& piece, int k, Vec2 direction);
 
+/// Does the body's outline turn inward at corner `k`? The lines of both edges there bound what is outside.
+inline bool isNotch(const ConvexPiece& piece, int k) {
+  return !piece.cones.empty() && piece.cones[k][0] == Vec2{};
+}
+
 /// Does the segment meet the (rounded) piece? Own coordinates. At rounded corners up to 0.4 radius too
 /// generous.
 bool meets(const ConvexPiece& piece, Vec2 from, Vec2 to);

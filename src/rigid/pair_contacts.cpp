@@ -11,6 +11,10 @@
 namespace smokebox {
 
 namespace {
+// Pieces that are nearer than this share of the thinner one's width touch, whatever their speed says: others
+// may press on them within the sub-step.
+constexpr double kTouching = 0.01;
+
 /// Distance of the point from the box around a body's pieces.
 double distanceFrom(const Extent& box, const Frame& frame, Vec2 point) {
   const Vec2 p = toLocal(frame, point) - box.centre;
@@ -77,19 +81,6 @@ namespace {
 double smallestGap(const Manifold& manifold) {
   return std::min(manifold.points[0].gap, manifold.points[manifold.count - 1].gap);
 }
-
-/// Do the points of a manifold stay in front of its line for `time` seconds? Where they do not, though the
-/// two do not meet, one goes round the other's corner.
-bool staysAhead(const Bodies& bodies, const PairKey& key, const Frame& a, const Frame& b, double time,
-                const Manifold& manifold) {
-  for (int k = 0; k < manifold.count; ++k) {
-    const auto& [point, gap, feature] = manifold.points[k];
-    const Vec2 by =
-        bodies.velocityAt(key.b, point - b.position) - bodies.velocityAt(key.a, point - a.position);
-    if (gap + time * dot(manifold.normal, by) < 0) return false;
-  }
-  return true;
-}
 }  // namespace
 
 double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
@@ -105,7 +96,7 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
     fb = {fb.position + aheadB.linear(), turnedBy(fb.turn, aheadB.turn)};
   }
   fb.position = fb.position + shift;
-  const double rest = h - later.time;
+  const double rest = h - later.time, thin = thinner(bodies, key.a, key.b);
   double clear = 1e300;
   Manifold manifold;
   auto meet = [&](const ConvexPiece& pa, const ConvexPiece& pb, PiecePair pieces) {
@@ -116,24 +107,34 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
       return;
     }
     double share = 0;
+    bool passes = false;  // they do not meet, if nothing else strikes them
     Frame ta = fa, tb = fb;
     if (swept) {
       // All that may come to touch within the sub-step counts: what others do to the two changes their ways.
-      const double target = kSweptTarget * thinner(bodies, key.a, key.b);
       const bool isNear = collide(pa, fa, pb, fb, margin, manifold);
-      if (!isNear || smallestGap(manifold) > 2 * target) {
+      if (!isNear || smallestGap(manifold) > kTouching * thin) {
         const Motion &va = bodies.velocity[key.a], &vb = bodies.velocity[key.b];
         const Sweep sa{fa, rest * va.linear(), rest * va.turn}, sb{fb, rest * vb.linear(), rest * vb.turn};
-        const auto hit = timeOfImpact(pa, sa, pb, sb, target);
+        const auto hit = timeOfImpact(pa, sa, pb, sb, kSweptTarget * thin);
         clear = 0;
         if (hit) {
           share = *hit;
           ta = frameAt(sa, share);
           tb = frameAt(sb, share);
-          if (!collide(pa, ta, pb, tb, margin, manifold)) return;
-        } else if (!isNear || !staysAhead(bodies, key, fa, fb, rest, manifold)) {
+          Manifold there;
+          if (collide(pa, ta, pb, tb, margin, there)) {
+            manifold = there;
+          } else if (isNear) {  // a corner in a notch: seen from there, it belongs to the next piece
+            share = 0;
+            ta = fa;
+            tb = fb;
+          } else {
+            return;
+          }
+        } else if (!isNear) {
           return;
         }
+        passes = !hit;
       }
     } else if (!collide(pa, fa, pb, fb, margin, manifold)) {
       clear = std::min(clear, manifold.apart);
@@ -158,8 +159,11 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
       contact.feature[k] = manifold.points[k].feature;
       const double speed = partingSpeed(bodies, contact, p);
       contact.approach = std::max(contact.approach, -speed);
+      // One that goes round the other's corner may get behind the line of an edge on its way.
+      const double gap = passes ? std::max(manifold.points[k].gap, kSweptTarget * thin - rest * speed)
+                                : manifold.points[k].gap;
       // As of the step's start, by the same straight-line rule that brings it up to date.
-      p.gap = manifold.points[k].gap - share * rest * speed - gapMoved(bodies, contact, p) -
+      p.gap = gap - share * rest * speed - gapMoved(bodies, contact, p) -
               dot(contact.normal, aheadB.linear() - aheadA.linear()) -
               aheadB.turn * cross(p.armB, contact.normal) + aheadA.turn * cross(p.armA, contact.normal);
       p.armA = p.armA + later.time * bodies.velocity[key.a].linear();

@@ -17,6 +17,10 @@ struct Contacts {
   double smallestGap = 1e300, smallestUp = 1;
 };
 
+double smallestGapOf(const Manifold& manifold) {
+  return std::min(manifold.points[0].gap, manifold.points[manifold.count - 1].gap);
+}
+
 Contacts contactsOf(const BodyShape& a, const Frame& fa, const BodyShape& b, const Frame& fb, double margin) {
   Contacts contacts;
   std::vector<PiecePair> pairs;
@@ -119,6 +123,40 @@ TEST(RigidSeams, HillyGroundPushesUpOnly) {
       }
     }
   }
+}
+
+TEST(RigidSeams, ACornerAtTheBottomOfANotchMeetsBothEdges) {
+  // The needle's tip is wherever about the bottom, outside, behind one edge or behind both: outside is what
+  // lies in front of both lines, so there is a contact with either, as deep as the tip is behind its line.
+  constexpr double kMargin = 5e-3;
+  Dice dice(12);
+  int behindBoth = 0, beyondAnEnd = 0;
+  for (const double slope : {1.2, 0.6, 0.3, 0.1}) {
+    const BodyShape block =
+        makeSolidShape({PolygonShape{{{-1, -1}, {1, -1}, {1, slope}, {0, 0}, {-1, slope}}}, {}}, 1e-3);
+    const BodyShape needle = shapeOf(PolygonShape{{{0, 0}, {0.02, 0.3}, {-0.02, 0.3}}});
+    const Vec2 tip{0, -0.2};  // from its centre
+    for (int k = 0; k < 4000; ++k) {
+      const Turn turn = turnBy(dice.between(-0.1, 0.1));
+      const Vec2 at{dice.between(-2e-3, 2e-3), dice.between(-1e-3, 2e-3)};
+      const Contacts contacts = contactsOf(block, {}, needle, {at - rotate(turn, tip), turn}, kMargin);
+      bool isBehind = true;
+      for (const double side : {-1.0, 1.0}) {
+        const Vec2 normal = (1 / std::hypot(slope, 1)) * Vec2{-side * slope, 1};
+        const double gap = dot(normal, at);
+        const bool isMet =
+            std::any_of(contacts.manifolds.begin(), contacts.manifolds.end(), [&](const Manifold& m) {
+              return length(m.normal - normal) < 1e-9 && std::fabs(smallestGapOf(m) - gap) < 1e-9;
+            });
+        ASSERT_TRUE(isMet) << "slope " << slope << ", side " << side << ", at " << at.x << " " << at.y;
+        isBehind &= gap < 0;
+        beyondAnEnd += dot(at, perpendicular(normal)) * side > 0 ? 0 : 1;
+      }
+      behindBoth += isBehind;
+    }
+  }
+  EXPECT_GT(behindBoth, 500);
+  EXPECT_GT(beyondAnEnd, 500);
 }
 
 Outline randomStar(Dice& dice, int corners, double nearest) {
