@@ -17,8 +17,7 @@ void chooseOutline(const Side& side, const Frame& referenceInOther, double margi
   const ConvexPiece &p = side.reference, &q = side.other;
   const int n = static_cast<int>(p.normals.size());
   // A corner that sinks in at the bottom of a notch is behind both edges there, whichever piece it is in.
-  constexpr double kShallow = 0.5;
-  const double shallow = std::min(margin, kShallow * std::min(p.within, q.within));
+  const double shallow = std::min({margin, p.notchReach, q.within});
   int at = 0;
   for (int k = 0; k < n; ++k) {
     if (p.inner[k]) continue;

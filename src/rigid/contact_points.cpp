@@ -85,8 +85,9 @@ namespace {
 /// May something touch the line of edge `k`, which is of `size`, where it is `along`, beyond an end of it? It
 /// may next to a notch: it touches the edge that follows there, and the least that it moves takes it back.
 bool isNextToNotch(const ConvexPiece& piece, int k, double along, double size, double margin) {
-  if (along < 0) return -along <= margin && isNotch(piece, k);
-  return along - size <= margin && isNotch(piece, next(piece, k));
+  const double most = std::min(margin, piece.notchReach);
+  if (along < 0) return -along <= most && isNotch(piece, k);
+  return along - size <= most && isNotch(piece, next(piece, k));
 }
 
 /// Edge `incident` of the other piece clipped to edge `k` of the reference; points farther than `margin` are

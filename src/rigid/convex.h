@@ -59,6 +59,9 @@ struct ConvexPiece {
   /// points into the body, where nothing can touch. Empty if the piece is whole: then they are its own
   /// normals.
   std::vector<std::array<Vec2, 2>> cones;
+  /// So far about a corner that points into the body the lines of its edges bound what is outside, m: less
+  /// than the body is thick, lest what touches its other side meets them.
+  double notchReach = 0;
 };
 
 /// A piece of a body of one piece: 1, 2 or more points (convex, counterclockwise), no inner edges.

@@ -180,6 +180,8 @@ BodyShape makeShape(const PlacedShape& shape, double tolerance, const Vec2* orig
   CutShape cut = cutShape(parts, tolerance);
   body.pieces = std::move(cut.pieces);
   body.thinnest = cut.thinnest;
+  constexpr double kNotchReach = 0.25;
+  for (ConvexPiece& piece : body.pieces) piece.notchReach = kNotchReach * cut.thinnest;
   for (const ConvexPiece& piece : body.pieces)
     for (Vec2 p : piece.points) body.reach = std::max(body.reach, length(p) + piece.radius);
   body.tree = PieceTree(body.pieces);

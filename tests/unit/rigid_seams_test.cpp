@@ -159,6 +159,33 @@ TEST(RigidSeams, ACornerAtTheBottomOfANotchMeetsBothEdges) {
   EXPECT_GT(beyondAnEnd, 500);
 }
 
+TEST(RigidSeams, WhatSlidesDownOutsideAThinCupMeetsItsSideOnly) {
+  // The floor inside ends at a notch 2 cm from there, and the margin is wider: still it bounds nothing
+  // outside.
+  constexpr double kWall = 0.02;
+  for (const double base : {kWall, 1.0}) {
+    const BodyShape cup = makeSolidShape({PolygonShape{{{-kWall, -base},
+                                                        {3 + kWall, -base},
+                                                        {3 + kWall, 1},
+                                                        {3, 1},
+                                                        {3, 0},
+                                                        {0, 0},
+                                                        {0, 1},
+                                                        {-kWall, 1}}},
+                                          {}},
+                                         1e-3);
+    const BodyShape box = shapeOf(BoxShape{{2, 2}});
+    for (const double apart : {5e-3, 1e-4, -1e-4, -2e-3})
+      for (int k = -300; k <= 300; ++k) {
+        const Frame frame{{-kWall - apart - 1, 1 + k * 1e-3}, {}};
+        for (const Manifold& m : contactsOf(cup, {}, box, frame, 0.08).manifolds) {
+          ASSERT_NEAR(m.normal.x, -1, 1e-9) << base << " " << apart << " " << k;
+          ASSERT_NEAR(smallestGapOf(m), apart, 1e-9) << base << " " << apart << " " << k;
+        }
+      }
+  }
+}
+
 Outline randomStar(Dice& dice, int corners, double nearest) {
   Outline outline;
   for (int k = 0; k < corners; ++k) {
