@@ -64,20 +64,20 @@ bool collideOutlines(const Side& ab, const Side& ba, double separation, double m
   OutlineChoice choice;
   chooseOutline(ab, ba.otherInReference, margin, choice);
   chooseOutline(ba, ab.otherInReference, margin, choice);
+  const bool found = choice.manifold.count > 0;
   // An overlap that is far deeper than that of the two pieces goes through a neighbouring piece, which has it
   // too; unless this one is swallowed.
   constexpr double kFar = 10, kSwallowed = 0.2;
-  const bool found = choice.manifold.count > 0;
-  const bool swallowed = separation < -kSwallowed * std::min(ab.reference.reach, ba.reference.reach);
-  if (found && (choice.inNotch || choice.separation >= std::min(0.0, kFar * separation))) {
-    manifold = choice.manifold;
-    return true;
+  if (separation >= -kSwallowed * std::min(ab.reference.reach, ba.reference.reach)) {
+    if (found && (choice.inNotch || choice.separation >= std::min(0.0, kFar * separation)))
+      manifold = choice.manifold;
+    return manifold.count > 0;
   }
-  if (!swallowed) return false;
   // Out of what swallowed it by the nearest edge, never across a whole wall.
+  constexpr double kFarther = 2;
   nearestOutline(ab, choice);
   nearestOutline(ba, choice);
-  const bool near = found && choice.separation >= kFar * choice.fallbackSeparation;
+  const bool near = found && choice.separation >= kFarther * choice.fallbackSeparation;
   manifold = near ? choice.manifold : choice.fallback;
   return manifold.count > 0;
 }

@@ -28,8 +28,9 @@ constexpr int kPlainSweeps = 3;
 // Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
 // in a sub-step; over those places alone where they change by this share of that.
 constexpr int kRoughSweeps = 16;
-// In a press they go over so many times as many contacts as there are, at most.
-constexpr long kRoughTimes = 2;
+// In a press they go over so many times as many contacts as there are, at most, and who is thrown off its way
+// there waits for the next sub-step.
+constexpr long kRoughTimes = 1;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
 constexpr double kSeparateShare = 0.25, kSeparateSpeed = 4;
@@ -143,10 +144,12 @@ double RigidSystem::State::sweep(double h, bool first, double enough) {
   return change;
 }
 
+double RigidSystem::State::roughFrom(double h) const { return kRough * typicalWidth / h; }
+
 // Where heaps land there is no time for sweeps until all is settled, but none may sink into another: those
 // places are gone over some more times.
 void RigidSystem::State::sweepRough(double h, double change) {
-  const double enough = kRough * typicalWidth / h, place = kRoughPlace * enough;
+  const double enough = roughFrom(h), place = kRoughPlace * enough;
   if (change <= enough) return;
   blocks.beginRough(place);
   roughOnes.begin(bodies, spare, narrow.lively(), place);
@@ -203,7 +206,7 @@ void RigidSystem::State::solveContacts(double h) {
     stirred = true;
     for (std::size_t k = 0; k < spare.size(); ++k)
       if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
-    if (stir == NarrowPhase::Stir::later) break;
+    if (stir == NarrowPhase::Stir::later || (press.isOn() && last > roughFrom(h))) break;
     narrow.refreshNew(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
   }
   if (firstOfStep) {

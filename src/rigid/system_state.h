@@ -47,6 +47,8 @@ struct RigidSystem::State {
   /// Lets the bodies of a joint pass through each other, or no longer.
   void setJoined(const JointDef& joint, bool on);
   double sweep(double h, bool first, double enough);
+  /// Sweeps whose change of a relative velocity is beyond this leave a rough state, m/s.
+  double roughFrom(double h) const;
   void sweepRough(double h, double change);
   MoveApart moveApart(double h) const;
   void separateAll(double h);

@@ -186,6 +186,21 @@ TEST(RigidSeams, WhatSlidesDownOutsideAThinCupMeetsItsSideOnly) {
   }
 }
 
+TEST(RigidSeams, WhatALongPlateHasSwallowedIsPushedOutOfItsNearestFace) {
+  // The way out is at most half the plate's height and the star's reach; a piece of it may ask for twice that,
+  // but never for the way to the plate's end.
+  const double height = 1, reach = 0.4;
+  const BodyShape plate = makeSolidShape({BoxShape{{24, height}}, {}}, 1e-3);
+  Dice dice(5);
+  for (int k = 0; k < 2000; ++k) {
+    const auto star = randomPolygon(dice, true, reach);
+    const Frame frame{{dice.between(-8, 8), dice.between(-0.3, 0.3)}, turnBy(dice.between(0, 6))};
+    const Contacts contacts = contactsOf(plate, {}, *star, frame, 0.02);
+    ASSERT_FALSE(contacts.manifolds.empty()) << k;
+    ASSERT_GT(contacts.smallestGap, -2 * (0.5 * height + reach)) << k;
+  }
+}
+
 Outline randomStar(Dice& dice, int corners, double nearest) {
   Outline outline;
   for (int k = 0; k < corners; ++k) {
