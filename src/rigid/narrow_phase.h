@@ -46,8 +46,8 @@ class NarrowPhase {
                    std::vector<Motion>& way);
   /// Bodies between others that close in whatever pushes back (a press): no impulses can part them all. These
   /// are not carried on, or they would grow without bound, and make none faster than the fastest around it
-  /// was `before`.
-  void yieldCrushed(Bodies& bodies, const std::vector<Motion>& before);
+  /// was `before`. Has any been changed?
+  bool yieldCrushed(Bodies& bodies, const std::vector<Motion>& before);
   /// A sub-step has passed.
   void advance() { elapsed_ += h_; }
   /// Remembers the contacts and their impulses for the next step; the calm ones are up to date.

@@ -13,7 +13,7 @@ namespace {
 constexpr double kCrushed = 0.01, kCrushSpeed = 0.2;
 }  // namespace
 
-void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {
+bool NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before) {
   crushed_.clear();
   auto isCrushed = [&](const Contact& c) {
     const double deep = kCrushed * thinner(bodies, c.a, c.b);
@@ -33,7 +33,7 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
           crushedAt_[body] = static_cast<int>(crushed_.size());
           crushed_.push_back(body);
         }
-  if (crushed_.empty()) return;
+  if (crushed_.empty()) return false;
   auto speed = [&](int body) {
     const Motion& v = before[body];
     return length(v.linear()) + std::abs(v.turn) * bodies.extent[body].turningReach();
@@ -60,12 +60,13 @@ void NarrowPhase::yieldCrushed(Bodies& bodies, const std::vector<Motion>& before
     }
     if (turning > most) v.turn *= most / turning;
   }
-  if (!any) return;
+  if (!any) return false;
   for (SolvedContact& c : lively_) {
     const int a = crushedAt_[c.a], b = crushedAt_[c.b];
     if ((a >= 0 && crushSpeed_[a] < 0) || (b >= 0 && crushSpeed_[b] < 0))
       for (ContactPoint& p : c.points) p.impulseN = p.impulseT = 0;
   }
+  return true;
 }
 
 }  // namespace smokebox

@@ -92,8 +92,9 @@ void Press::end(const Bodies& bodies) {
   isOn_ |= any;
 }
 
-void Press::yield(Bodies& bodies) const {
+bool Press::yield(Bodies& bodies) const {
   const int count = std::min(bodies.count(), static_cast<int>(most_.size()));
+  bool any = false;
   for (int b = kWalls; b < count; ++b) {
     if (!bodies.moves(b)) continue;
     const double speed = speedOf(bodies, b);
@@ -101,7 +102,9 @@ void Press::yield(Bodies& bodies) const {
     Motion& v = bodies.velocity[b];
     const double keep = most_[b] / speed;
     v = {keep * v.x, keep * v.y, keep * v.turn, 0};
+    any = true;
   }
+  return any;
 }
 
 }  // namespace smokebox

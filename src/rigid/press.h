@@ -28,8 +28,8 @@ class Press {
   double sunk(int body) const { return body < static_cast<int>(sunk_.size()) ? sunk_[body] : 0; }
   /// Is one of them sunk? It does not bounce.
   bool sinks(int a, int b) const { return sunk(a) > 0 || sunk(b) > 0; }
-  /// Slows down what has become too fast.
-  void yield(Bodies& bodies) const;
+  /// Slows down what has become too fast; is there any?
+  bool yield(Bodies& bodies) const;
 
  private:
   struct Rest {

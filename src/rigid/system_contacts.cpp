@@ -215,8 +215,8 @@ void RigidSystem::State::solveContacts(double h) {
     firstOfStep = false;
   }
   if (!joints.empty()) yieldTorn();
-  narrow.yieldCrushed(bodies, start);
-  press.yield(bodies);
+  stirred |= narrow.yieldCrushed(bodies, start);
+  stirred |= press.yield(bodies);
   if (mayBounce) findFlying(h);
 }
 
