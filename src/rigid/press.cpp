@@ -15,6 +15,8 @@ constexpr double kOfSolid = 4;
 constexpr double kOfBodies = 1.25, kMore = 2;
 // Sunk is what overlaps by more than this share of the thinner one's width.
 constexpr double kSunk = 0.1;
+// There is no room where more than this share of what is pressed is sunk.
+constexpr double kNoRoom = 0.01;
 
 double speedOf(const Bodies& bodies, int body) {
   const Motion& v = bodies.velocity[body];
@@ -28,7 +30,7 @@ int Press::rootOf(int body) {
 }
 
 bool Press::begin(const Bodies& bodies) {
-  isOn_ = false;
+  hasRoom_ = true;
   most_.clear();
   bool any = !sunk_.empty();
   for (int b = kWalls; b < bodies.count() && !any; ++b)
@@ -79,17 +81,17 @@ void Press::end(const Bodies& bodies) {
     const int root = bodies.moves(b) ? rootOf(b) : -1;
     if (root < 0 || solid_[root] != -2 || driven_[root] <= 0) continue;
     most_[b] = std::max(kOfSolid * driven_[root], kOfBodies * fastest_[root] + kMore);
-    isOn_ = true;
   }
-  bool any = false;
+  int pressed = 0, sinking = 0;
   for (int b = 0; b < bodies.count(); ++b) {
-    const bool pressed = most_[b] < std::numeric_limits<double>::infinity();
-    if (!pressed && sunk(b) == 0) deep_[b] = 0;
-    any |= deep_[b] > 0;
+    const bool isPressed = most_[b] < std::numeric_limits<double>::infinity();
+    if (!isPressed && sunk(b) == 0) deep_[b] = 0;
+    pressed += isPressed ? 1 : 0;
+    sinking += deep_[b] > 0 ? 1 : 0;
   }
   sunk_.swap(deep_);
-  if (!any) sunk_.clear();
-  isOn_ |= any;
+  if (sinking == 0) sunk_.clear();
+  hasRoom_ = sinking <= kNoRoom * pressed;
 }
 
 bool Press::yield(Bodies& bodies) const {

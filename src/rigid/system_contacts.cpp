@@ -28,8 +28,8 @@ constexpr int kPlainSweeps = 3;
 // Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
 // in a sub-step; over those places alone where they change by this share of that.
 constexpr int kRoughSweeps = 16;
-// In a press they go over so many times as many contacts as there are, at most, and who is thrown off its way
-// there waits for the next sub-step.
+// In a press without room they go over so many times as many contacts as there are, at most, and who is
+// thrown off its way there waits for the next sub-step.
 constexpr long kRoughTimes = 1;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
@@ -153,9 +153,9 @@ void RigidSystem::State::sweepRough(double h, double change) {
   if (change <= enough) return;
   blocks.beginRough(place);
   roughOnes.begin(bodies, spare, narrow.lively(), place);
-  // In a press all is rough, and no time is enough.
+  // Without room all is rough, and no time is enough.
   const long all = roughOnes.all() + static_cast<long>(narrow.calm().size());
-  long left = press.isOn() ? kRoughTimes * all : std::numeric_limits<long>::max();
+  long left = press.hasRoom() ? std::numeric_limits<long>::max() : kRoughTimes * all;
   for (int more = 0; more < kRoughSweeps && change > enough && left > 0; ++more) {
     left -= roughOnes.size() + blocks.roughSize();
     change = std::max(blocks.sweepRough(bodies, place), roughOnes.sweep(bodies, place));
@@ -206,7 +206,7 @@ void RigidSystem::State::solveContacts(double h) {
     stirred = true;
     for (std::size_t k = 0; k < spare.size(); ++k)
       if (narrow.isDropped(uncoloured[k])) spare[k].count = 0;
-    if (stir == NarrowPhase::Stir::later || (press.isOn() && last > roughFrom(h))) break;
+    if (stir == NarrowPhase::Stir::later || (!press.hasRoom() && last > roughFrom(h))) break;
     narrow.refreshNew(bodies, broad, h, anyStruck ? &impact.moments() : nullptr);
   }
   if (firstOfStep) {
