@@ -23,7 +23,7 @@ constexpr double kOfFlying = 0.05;
 // Impacts of a step, beyond so many and so many for each body: the slowest approach that still bounces
 // doubles with each further so many. A crowd that is driven together settles what is left in the contact
 // solver.
-constexpr long kFreeOfStep = 1000, kFreeOfBody = 4, kDoubling = 100;
+constexpr long kFreeOfStep = 1000, kFreeOfBody = 2, kDoubling = 100;
 
 /// What displacements make of a point's gap.
 double gapOf(const std::vector<Motion>& way, const Contact& contact, const ContactPoint& point) {

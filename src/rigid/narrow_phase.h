@@ -46,7 +46,7 @@ class NarrowPhase {
                    std::vector<Motion>& way);
   /// Bodies between others that close in whatever pushes back (a press): no impulses can part them all. These
   /// are not carried on, or they would grow without bound, and make none faster than the fastest around it
-  /// was `before`. Has any been changed?
+  /// was `before`. Has any been taken off the record?
   bool yieldCrushed(Bodies& bodies, const std::vector<Motion>& before);
   /// A sub-step has passed.
   void advance() { elapsed_ += h_; }

@@ -16,7 +16,7 @@ constexpr double kOfBodies = 1.25, kMore = 2;
 // Sunk is what overlaps by more than this share of the thinner one's width.
 constexpr double kSunk = 0.1;
 // There is no room where more than this share of what is pressed is sunk.
-constexpr double kNoRoom = 0.01;
+constexpr double kNoRoom = 0.004;
 
 double speedOf(const Bodies& bodies, int body) {
   const Motion& v = bodies.velocity[body];
@@ -30,6 +30,7 @@ int Press::rootOf(int body) {
 }
 
 bool Press::begin(const Bodies& bodies) {
+  isOn_ = false;
   hasRoom_ = true;
   most_.clear();
   bool any = !sunk_.empty();
@@ -91,12 +92,12 @@ void Press::end(const Bodies& bodies) {
   }
   sunk_.swap(deep_);
   if (sinking == 0) sunk_.clear();
+  isOn_ = pressed + sinking > 0;
   hasRoom_ = sinking <= kNoRoom * pressed;
 }
 
-bool Press::yield(Bodies& bodies) const {
+void Press::yield(Bodies& bodies) const {
   const int count = std::min(bodies.count(), static_cast<int>(most_.size()));
-  bool any = false;
   for (int b = kWalls; b < count; ++b) {
     if (!bodies.moves(b)) continue;
     const double speed = speedOf(bodies, b);
@@ -104,9 +105,7 @@ bool Press::yield(Bodies& bodies) const {
     Motion& v = bodies.velocity[b];
     const double keep = most_[b] / speed;
     v = {keep * v.x, keep * v.y, keep * v.turn, 0};
-    any = true;
   }
-  return any;
 }
 
 }  // namespace smokebox

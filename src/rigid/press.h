@@ -22,14 +22,16 @@ class Press {
   /// A contact of that step; `overlap`: at its end, m.
   void add(const Bodies& bodies, const Contact& contact, double overlap);
   void end(const Bodies& bodies);
+  /// Was there such an island in the last step, or something sunk?
+  bool isOn() const { return isOn_; }
   /// Is all that is pressed where it may be, but for a few bodies?
   bool hasRoom() const { return hasRoom_; }
   /// How deep a sunk body lay in others at the end of the last step, m, its smallest width at most; else 0.
   double sunk(int body) const { return body < static_cast<int>(sunk_.size()) ? sunk_[body] : 0; }
   /// Is one of them sunk? It does not bounce.
   bool sinks(int a, int b) const { return sunk(a) > 0 || sunk(b) > 0; }
-  /// Slows down what has become too fast; is there any?
-  bool yield(Bodies& bodies) const;
+  /// Slows down what has become too fast.
+  void yield(Bodies& bodies) const;
 
  private:
   struct Rest {
@@ -43,7 +45,7 @@ class Press {
   std::vector<double> driven_, fastest_;  // by root, m/s
   std::vector<double> most_;              // by body, m/s; empty: no solid moves
   std::vector<double> sunk_, deep_;       // by body, m; sunk_ is empty: none; deep_: of all
-  bool hasRoom_ = true;
+  bool isOn_ = false, hasRoom_ = true;
 };
 
 }  // namespace smokebox

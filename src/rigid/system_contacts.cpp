@@ -28,9 +28,9 @@ constexpr int kPlainSweeps = 3;
 // Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
 // in a sub-step; over those places alone where they change by this share of that.
 constexpr int kRoughSweeps = 16;
-// In a press without room they go over so many times as many contacts as there are, at most, and who is
-// thrown off its way there waits for the next sub-step.
-constexpr long kRoughTimes = 1;
+// In a press they go over so many times as many contacts as there are, at most: the second where it has no
+// room left. There, who is thrown off its way waits for the next sub-step.
+constexpr long kRoughTimes = 4, kRoughTimesNoRoom = 1;
 constexpr double kRough = 3e-3, kRoughPlace = 0.1;
 // Of an overlap, in each sub-step; at this speed at most, m/s.
 constexpr double kSeparateShare = 0.25, kSeparateSpeed = 4;
@@ -153,9 +153,12 @@ void RigidSystem::State::sweepRough(double h, double change) {
   if (change <= enough) return;
   blocks.beginRough(place);
   roughOnes.begin(bodies, spare, narrow.lively(), place);
-  // Without room all is rough, and no time is enough.
-  const long all = roughOnes.all() + static_cast<long>(narrow.calm().size());
-  long left = press.hasRoom() ? std::numeric_limits<long>::max() : kRoughTimes * all;
+  // In a press all may be rough, and no time is enough.
+  long left = std::numeric_limits<long>::max();
+  if (press.isOn()) {
+    const long all = roughOnes.all() + static_cast<long>(narrow.calm().size());
+    left = (press.hasRoom() ? kRoughTimes : kRoughTimesNoRoom) * all;
+  }
   for (int more = 0; more < kRoughSweeps && change > enough && left > 0; ++more) {
     left -= roughOnes.size() + blocks.roughSize();
     change = std::max(blocks.sweepRough(bodies, place), roughOnes.sweep(bodies, place));
@@ -216,7 +219,7 @@ void RigidSystem::State::solveContacts(double h) {
   }
   if (!joints.empty()) yieldTorn();
   stirred |= narrow.yieldCrushed(bodies, start);
-  stirred |= press.yield(bodies);
+  press.yield(bodies);
   if (mayBounce) findFlying(h);
 }
 

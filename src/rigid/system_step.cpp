@@ -319,8 +319,8 @@ void RigidSystem::State::moveOn(double h) {
 
 void RigidSystem::State::move(double h) {
   const bool isLast = timeLeft < 1.5 * h;
-  // After contacts were dropped or found anew, or something has yielded, not all that the velocities gained
-  // is on record.
+  // After contacts were dropped or found anew, or have yielded, not all that the velocities gained is on
+  // record.
   const bool isKnown = springs.empty() && joints.empty() && !stirred && !isLast;
   carried = !isKnown ? Carried::nothing : mayBounce ? Carried::share : Carried::all;
   moveOn(h);
