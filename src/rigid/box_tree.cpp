@@ -9,11 +9,12 @@ constexpr double kLarge = 16;
 constexpr std::size_t kMostLarge = 16;
 }  // namespace
 
-void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items) {
+void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items,
+                    const std::vector<std::uint64_t>& groups) {
   items_ = items;
   nodes_.clear();
   setLargeApart(boxes);
-  if (small_ > 0) nodes_.push_back({{}, 0, static_cast<int>(small_), -1});
+  if (small_ > 0) nodes_.push_back({{}, 0, static_cast<int>(small_), -1, 0});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int first = nodes_[n].first, count = nodes_[n].count;
     if (count <= kLeaf) continue;
@@ -37,8 +38,8 @@ void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items
       });
     nodes_[n].first = static_cast<int>(nodes_.size());
     nodes_[n].count = 0;
-    nodes_.push_back({{}, first, half, static_cast<int>(n)});
-    nodes_.push_back({{}, first + half, count - half, static_cast<int>(n)});
+    nodes_.push_back({{}, first, half, static_cast<int>(n), 0});
+    nodes_.push_back({{}, first + half, count - half, static_cast<int>(n), 0});
   }
   place_.resize(boxes.size());
   leaf_.assign(boxes.size(), -1);
@@ -48,6 +49,13 @@ void BoxTree::build(const std::vector<Box>& boxes, const std::vector<int>& items
       place_[items_[k]] = k;
       leaf_[items_[k]] = static_cast<int>(n);
     }
+  groups_.resize(items_.size());
+  for (std::size_t k = 0; k < items_.size(); ++k) groups_[k] = groups[items_[k]];
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
+    node->groups =
+        node->count > 0 ? groups_[node->first] : nodes_[node->first].groups & nodes_[node->first + 1].groups;
+    for (int k = node->first; k < node->first + node->count; ++k) node->groups &= groups_[k];
+  }
   refit(boxes);
 }
 

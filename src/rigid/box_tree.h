@@ -1,8 +1,10 @@
 // A tree of boxes over items, for questions such as "which boxes meet this one": built top-down by medians
 // (O(n log n)), refitted in O(n) when boxes have changed a little, in O(log n) for each one when few have. A
 // few boxes far larger than most (walls) would widen every node above them: they are kept beside the tree.
+// Items may be in groups, as bits: two that share one never meet.
 #pragma once
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -30,27 +32,29 @@ inline Box shifted(const Box& a, Vec2 by) { return {a.low + by, a.high + by}; }
 
 class BoxTree {
  public:
-  /// Over the items whose numbers are listed.
-  void build(const std::vector<Box>& boxes, const std::vector<int>& items);
+  /// Over the items whose numbers are listed. `groups`: by item.
+  void build(const std::vector<Box>& boxes, const std::vector<int>& items,
+             const std::vector<std::uint64_t>& groups);
   void refit(const std::vector<Box>& boxes);
   /// The same where only that item's box has changed.
   void refit(const std::vector<Box>& boxes, int item);
 
-  /// Calls visit(item) for every item whose box meets `box`.
+  /// Calls visit(item) for every item whose box meets `box` and who is in none of `groups`.
   template <class Visit>
-  void query(const Box& box, Visit&& visit) const {
-    for (std::size_t k = small_; k < items_.size(); ++k)
-      if (boxes_[k].meets(box)) visit(items_[k]);
+  void query(const Box& box, std::uint64_t groups, Visit&& visit) const {
+    const auto meet = [&](std::size_t k) {
+      if ((groups_[k] & groups) == 0 && boxes_[k].meets(box)) visit(items_[k]);
+    };
+    for (std::size_t k = small_; k < items_.size(); ++k) meet(k);
     if (nodes_.empty()) return;
     int stack[96];
     int top = 0;
     stack[top++] = 0;
     while (top > 0) {
       const Node& node = nodes_[stack[--top]];
-      if (!node.box.meets(box)) continue;
+      if ((node.groups & groups) != 0 || !node.box.meets(box)) continue;
       if (node.count > 0) {
-        for (int k = node.first; k < node.first + node.count; ++k)
-          if (boxes_[k].meets(box)) visit(items_[k]);
+        for (int k = node.first; k < node.first + node.count; ++k) meet(k);
       } else {
         stack[top++] = node.first;
         stack[top++] = node.first + 1;
@@ -63,7 +67,7 @@ class BoxTree {
   template <class Visit>
   void eachPair(const std::vector<char>& marked, Visit&& visit) {
     auto meet = [&](std::size_t k, std::size_t l) {
-      if (!boxes_[k].meets(boxes_[l])) return;
+      if ((groups_[k] & groups_[l]) != 0 || !boxes_[k].meets(boxes_[l])) return;
       const int a = items_[k], b = items_[l];
       if (marked[a] || marked[b]) visit(a, b);
     };
@@ -77,6 +81,7 @@ class BoxTree {
       pairs_.pop_back();
       if (!marked_[i] && !marked_[j]) continue;
       const Node &a = nodes_[i], &b = nodes_[j];
+      if ((a.groups & b.groups) != 0) continue;
       if (i == j && a.count == 0) {
         pairs_.push_back({a.first, a.first});
         pairs_.push_back({a.first + 1, a.first + 1});
@@ -106,6 +111,7 @@ class BoxTree {
     int first = 0;  // the first of two children, or of `count` items
     int count = 0;  // 0: an inner node
     int parent = -1;
+    std::uint64_t groups = 0;  // those that all its items share
   };
   static double sizeOf(const Box& box) { return box.high.x - box.low.x + box.high.y - box.low.y; }
   Box boxOf(const Node& node) const;
@@ -118,6 +124,7 @@ class BoxTree {
   std::size_t small_ = 0;  // so many of them are in the tree
   std::vector<double> sizes_;
   std::vector<Box> boxes_;                  // of items_
+  std::vector<std::uint64_t> groups_;       // of items_
   std::vector<int> place_, leaf_;           // by item: in items_; node, -1 beside the tree
   std::vector<char> marked_;                // by node: an item in it is
   std::vector<std::pair<int, int>> pairs_;  // of nodes, still to be looked at

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace smokebox {
 
@@ -16,8 +17,7 @@ constexpr long kFewTimes = 8;
 constexpr long kFewer = 16;
 
 bool mayMeet(const Bodies& bodies, int a, int b) {
-  if (!bodies.moves(a) && !bodies.moves(b)) return false;
-  return (bodies.def[a].ignore & bodies.def[b].ignore) == 0 && !bodies.areJoined(a, b);
+  return (bodies.moves(a) || bodies.moves(b)) && !bodies.areJoined(a, b);
 }
 
 /// Box of a body whose frame is `frame`.
@@ -68,7 +68,7 @@ void BroadPhase::search(const Bodies& bodies, int body, bool imagesOnly, std::ve
       // The other one's image at +shift meets this body where the other one meets this body's image at
       // -shift.
       const Box box = shifted(fat_[body], {-sx * walls_.width, -sy * walls_.height});
-      tree_.query(box, [&](int other) {
+      tree_.query(box, groups_[body], [&](int other) {
         if (other == body || (refitted_[other] && other < body)) return;  // that one finds this one
         if (!mayMeet(bodies, body, other)) return;
         if (body < other)
@@ -122,11 +122,16 @@ void BroadPhase::update(const Bodies& bodies, Vec2 gravity, double dt) {
     }
   }
   sinceBuild_ += moved;
+  if (bodies.defsChanged) {
+    groups_.resize(count);
+    for (int b = 0; b < count; ++b)
+      listChanged |= std::exchange(groups_[b], bodies.def[b].ignore) != bodies.def[b].ignore;
+  }
   if (listChanged || sinceBuild_ > kRebuild * count) {
     items_.clear();
     for (int b = 0; b < count; ++b)
       if (listed_[b]) items_.push_back(b);
-    tree_.build(fat_, items_);
+    tree_.build(fat_, items_, groups_);
     sinceBuild_ = 0;
   } else if (moved > 0) {
     refitTree(moved);

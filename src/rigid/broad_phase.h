@@ -63,6 +63,7 @@ class BroadPhase {
   std::vector<Box> fat_;
   std::vector<char> listed_, refitted_;  // by body
   BoxTree tree_;
+  std::vector<std::uint64_t> groups_;  // by body
   std::vector<int> items_;
   std::vector<BodyPair> pairs_, next_;
   std::vector<PairKey> found_, late_;  // late: found within a step

@@ -13,6 +13,7 @@ int SpringSet::add(const SpringDef& def, const Bodies&) {
   Spring spring;
   spring.def = def;
   springs_.push_back(spring);
+  fresh_ = true;
   ++there_;
   stale_ = true;
   return count() - 1;
@@ -24,6 +25,7 @@ void SpringSet::remove(int spring) {
   s.there = false;
   s.impulse = 0;
   --there_;
+  ++removed_;
   stale_ = true;
 }
 
@@ -152,6 +154,8 @@ void SpringSet::push(int spring, Bodies& bodies, double share, const std::vector
 
 void SpringSet::takeBackHalf(Bodies& bodies, const std::vector<char>& fresh, double h) {
   h_ = h;
+  if (islands_.empty() && !fresh_) return;  // a sheet has no halves
+  fresh_ = false;
   for (int k = 0; k < count(); ++k) {
     Spring& spring = springs_[k];
     auto isFresh = [&](int body) { return body >= 0 && (fresh[body] & 1); };

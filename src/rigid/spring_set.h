@@ -24,6 +24,8 @@ class SpringSet {
   /// Where its end in the world is at the end of the next step.
   void moveEnd(int spring, Vec2 to);
   bool empty() const { return there_ == 0; }
+  /// How many have been removed, since it was made.
+  long removed() const { return removed_; }
 
   void beginStep(Bodies& bodies, double dt, int subSteps);
   void warmStart(Bodies& bodies, double h);
@@ -62,6 +64,8 @@ class SpringSet {
   StepClock clock_;
   double h_ = 0;  // of the last sub-step, s
   int there_ = 0;
+  long removed_ = 0;
+  bool fresh_ = false;     // a spring is
   bool stale_ = false;     // the islands must be laid out anew
   bool changed_ = false;   // one may be another than in the last step
   bool carrying_ = false;  // an end in the world is on its way

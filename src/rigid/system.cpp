@@ -230,6 +230,7 @@ double RigidSystem::spin(int body) const {
 }
 
 bool RigidSystem::springIsThere(int spring) const { return state_->springs.isThere(spring); }
+long RigidSystem::springsRemoved() const { return state_->springs.removed(); }
 const SpringDef& RigidSystem::spring(int spring) const { return state_->springs.def(spring); }
 double RigidSystem::springTension(int spring) const { return state_->springs.tension(spring); }
 bool RigidSystem::jointIsThere(int joint) const { return state_->joints.isThere(joint); }

@@ -121,6 +121,7 @@ class RigidSystem {
   double spin(int body) const;
   bool held(int body) const;
   bool springIsThere(int spring) const;
+  long springsRemoved() const;  // so far, torn ones among them
   const SpringDef& spring(int spring) const;
   /// N; positive: it pulls.
   double springTension(int spring) const;

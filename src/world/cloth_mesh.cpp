@@ -84,6 +84,8 @@ void ClothMesh::update(RigidSystem& system, double dt) {
 }
 
 void ClothMesh::dropTorn(RigidSystem& system) {
+  if (system.springsRemoved() == removed_) return;
+  removed_ = system.springsRemoved();
   bool torn = false;
   for (std::vector<Link>* links : {&right_, &up_, &farRight_, &farUp_, &rising_, &falling_})
     for (Link& link : *links) {

@@ -61,6 +61,7 @@ class ClothMesh {
   std::vector<char> whole_;
   std::vector<float> slack_;  // by cell: 1 while it is turned over, then less and less
   bool slackened_ = false;    // one is over 0
+  long removed_ = 0;          // springs of the system that were gone at the last look
 };
 
 }  // namespace smokebox

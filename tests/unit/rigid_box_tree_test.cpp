@@ -30,11 +30,22 @@ std::vector<int> allOf(const std::vector<Box>& boxes) {
   return items;
 }
 
-Pairs expected(const std::vector<Box>& boxes, const std::vector<char>& marked) {
+using Groups = std::vector<std::uint64_t>;
+
+/// Half of them in no group, the others in one or two of two; with `all`, each in the first one as well.
+Groups randomGroups(std::size_t count, std::mt19937& random, bool all) {
+  Groups groups;
+  for (std::size_t k = 0; k < count; ++k)
+    groups.push_back((random() % 2) * (random() % 4) * 2 + (all ? 1 : 0));
+  return groups;
+}
+
+Pairs expected(const std::vector<Box>& boxes, const std::vector<char>& marked, const Groups& groups) {
   Pairs pairs;
   for (int a = 0; a < static_cast<int>(boxes.size()); ++a)
     for (int b = a + 1; b < static_cast<int>(boxes.size()); ++b)
-      if ((marked[a] || marked[b]) && boxes[a].meets(boxes[b])) pairs.push_back({a, b});
+      if ((marked[a] || marked[b]) && (groups[a] & groups[b]) == 0 && boxes[a].meets(boxes[b]))
+        pairs.push_back({a, b});
   return pairs;
 }
 
@@ -47,16 +58,18 @@ Pairs found(BoxTree& tree, const std::vector<char>& marked) {
 
 TEST(BoxTree, PairsAreThoseThatMeet) {
   // Truth: every two boxes that meet, once, if one of them is marked; with and without walls, from none to
-  // many.
+  // many, in groups or not.
   std::mt19937 random(3);
   for (const int count : {0, 1, 3, 40, 700}) {
     const std::vector<Box> boxes = randomBoxes(count, random);
-    BoxTree tree;
-    tree.build(boxes, allOf(boxes));
-    std::vector<char> marked(boxes.size(), 1);
-    EXPECT_EQ(found(tree, marked), expected(boxes, marked)) << count;
-    for (char& mark : marked) mark = random() % 5 == 0;
-    EXPECT_EQ(found(tree, marked), expected(boxes, marked)) << count << ", a fifth marked";
+    for (const Groups& groups : {Groups(boxes.size(), 0), randomGroups(boxes.size(), random, false)}) {
+      BoxTree tree;
+      tree.build(boxes, allOf(boxes), groups);
+      std::vector<char> marked(boxes.size(), 1);
+      EXPECT_EQ(found(tree, marked), expected(boxes, marked, groups)) << count;
+      for (char& mark : marked) mark = random() % 5 == 0;
+      EXPECT_EQ(found(tree, marked), expected(boxes, marked, groups)) << count << ", a fifth marked";
+    }
   }
 }
 
@@ -66,21 +79,33 @@ TEST(BoxTree, BoxesThatChangeAreFound) {
   std::mt19937 random(5);
   std::vector<Box> boxes = randomBoxes(300, random);
   BoxTree tree;
-  tree.build(boxes, allOf(boxes));
+  const Groups groups = randomGroups(boxes.size(), random, false);
+  tree.build(boxes, allOf(boxes), groups);
   for (int k = 0; k < static_cast<int>(boxes.size()); k += 3) {
     boxes[k] = shifted(boxes[k], {0.01 * (random() % 1000), 0.01 * (random() % 1000)});
     tree.refit(boxes, k);
   }
   const std::vector<char> marked(boxes.size(), 1);
-  EXPECT_EQ(found(tree, marked), expected(boxes, marked));
-  for (const Box& box : boxes) {
+  EXPECT_EQ(found(tree, marked), expected(boxes, marked, groups));
+  for (std::size_t one = 0; one < boxes.size(); ++one) {
     std::vector<int> met, truth;
-    tree.query(box, [&](int item) { met.push_back(item); });
+    tree.query(boxes[one], groups[one], [&](int item) { met.push_back(item); });
     for (int k = 0; k < static_cast<int>(boxes.size()); ++k)
-      if (boxes[k].meets(box)) truth.push_back(k);
+      if ((groups[k] & groups[one]) == 0 && boxes[k].meets(boxes[one])) truth.push_back(k);
     std::sort(met.begin(), met.end());
     EXPECT_EQ(met, truth);
   }
+}
+
+TEST(BoxTree, ThoseOfOneGroupDoNotMeet) {
+  // Truth: where all share a group there is no pair, however much they overlap.
+  std::mt19937 random(7);
+  const std::vector<Box> boxes = randomBoxes(300, random);
+  const Groups groups = randomGroups(boxes.size(), random, true);
+  BoxTree tree;
+  tree.build(boxes, allOf(boxes), groups);
+  EXPECT_EQ(found(tree, std::vector<char>(boxes.size(), 1)), Pairs{});
+  for (const Box& box : boxes) tree.query(box, 1, [](int item) { ADD_FAILURE() << item; });
 }
 
 }  // namespace
