@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "scene/nearest.h"
 
@@ -35,7 +36,30 @@ std::string meant(const SceneSpec& spec, const std::string& name, bool solidsToo
   return suggestion(name, namesOfThings(spec, solidsToo));
 }
 
+/// The body of that name, not of that of its copies; -1: none.
+int bodyNamed(const SceneSpec& spec, const std::string& name) {
+  const Named* named = spec.names.find(name);
+  return named && named->of == Named::Of::body && spec.bodies[named->first].name == name ? named->first : -1;
+}
+
 }  // namespace
+
+void addNamed(SceneSpec& spec, SolidSpec solid) {
+  spec.names.add(solid.name, Named::Of::solid, static_cast<int>(spec.solids.size()));
+  spec.solids.push_back(std::move(solid));
+}
+
+void addNamed(SceneSpec& spec, BodySpec body) {
+  const int number = static_cast<int>(spec.bodies.size());
+  spec.names.add(body.family, Named::Of::body, number);
+  if (body.name != body.family) spec.names.add(body.name, Named::Of::body, number);
+  spec.bodies.push_back(std::move(body));
+}
+
+void addNamed(SceneSpec& spec, ClothSpec cloth) {
+  spec.names.add(cloth.name, Named::Of::cloth, static_cast<int>(spec.cloths.size()));
+  spec.cloths.push_back(std::move(cloth));
+}
 
 std::vector<std::string> namesOfThings(const SceneSpec& spec, bool solidsToo) {
   std::vector<std::string> names;
@@ -57,8 +81,7 @@ void checkName(Reader& reader, const YamlNode& node, const std::string& name) {
 void checkNewName(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name) {
   checkName(reader, node, name);
   if (name == kWorld) reader.error(node.mark, "the name `world` stands for the world");
-  const std::vector<std::string> others = namesOfThings(spec, true);
-  if (std::find(others.begin(), others.end(), name) != others.end())
+  if (spec.names.find(name) && name.find('.') == std::string::npos)
     reader.error(node.mark, "a second thing named `" + name + "`",
                  "solids, bodies, particles and cloths share their names");
 }
@@ -66,17 +89,15 @@ void checkNewName(Reader& reader, const YamlNode& node, const SceneSpec& spec, c
 std::optional<HoldSpec> findHold(Reader& reader, const YamlNode& node, const SceneSpec& spec,
                                  const std::string& name, bool laterToo) {
   if (name == kWorld) return HoldSpec{};
-  const auto& bodies = spec.bodies;
-  auto is = [&](const BodySpec& body) { return body.name == name; };
-  if (const auto body = std::find_if(bodies.begin(), bodies.end(), is); body != bodies.end()) {
-    if (body->later && !laterToo) {
+  if (const int body = bodyNamed(spec, name); body >= 0) {
+    if (spec.bodies[body].later && !laterToo) {
       reader.error(node.mark, "`" + name + "` is not there at the start: an event adds it");
       return {};
     }
-    return HoldSpec{HoldSpec::Of::body, static_cast<int>(body - bodies.begin()), -1, {}};
+    return HoldSpec{HoldSpec::Of::body, body, -1, {}};
   }
-  for (std::size_t k = 0; k < spec.solids.size(); ++k)
-    if (spec.solids[k].name == name) return HoldSpec{HoldSpec::Of::solid, static_cast<int>(k), -1, {}};
+  const Named* named = spec.names.find(name);
+  if (named && named->of == Named::Of::solid) return HoldSpec{HoldSpec::Of::solid, named->first, -1, {}};
   for (std::size_t k = 0; k < spec.cloths.size(); ++k) {
     const int clothsNode = clothNode(spec.cloths[k], name);
     if (clothsNode >= 0) return HoldSpec{HoldSpec::Of::cloth, static_cast<int>(k), clothsNode, {}};
@@ -85,12 +106,10 @@ std::optional<HoldSpec> findHold(Reader& reader, const YamlNode& node, const Sce
                  meant(spec, name + ".", true));
     return {};
   }
-  const auto copies =
-      std::count_if(bodies.begin(), bodies.end(), [&](const BodySpec& body) { return body.family == name; });
-  if (copies > 0)
+  if (named && named->of == Named::Of::body)
     reader.error(node.mark,
-                 "`" + name + "` stands for " + std::to_string(copies) + " copies; name one of them",
-                 name + ".0 to " + name + "." + std::to_string(copies - 1));
+                 "`" + name + "` stands for " + std::to_string(named->count) + " copies; name one of them",
+                 name + ".0 to " + name + "." + std::to_string(named->count - 1));
   else
     reader.error(node.mark, "no body, particle or solid is named `" + name + "`", meant(spec, name, true));
   return {};
@@ -98,12 +117,11 @@ std::optional<HoldSpec> findHold(Reader& reader, const YamlNode& node, const Sce
 
 Movables findMovables(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name) {
   Movables found;
-  for (std::size_t k = 0; k < spec.bodies.size(); ++k)
-    if (spec.bodies[k].family == name || spec.bodies[k].name == name)
-      found.bodies.push_back(static_cast<int>(k));
-  for (std::size_t k = 0; k < spec.cloths.size(); ++k)
-    if (spec.cloths[k].name == name) found.cloths.push_back(static_cast<int>(k));
-  if (found.bodies.empty() && found.cloths.empty())
+  const Named* named = spec.names.find(name);
+  if (named && named->of != Named::Of::solid)
+    for (int k = 0; k < named->count; ++k)
+      (named->of == Named::Of::body ? found.bodies : found.cloths).push_back(named->first + k);
+  else
     reader.error(node.mark, "no body, particle or cloth is named `" + name + "`", meant(spec, name, false));
   return found;
 }
@@ -117,10 +135,8 @@ void checkFollowed(Reader& reader, const YamlNode& node, const SceneSpec& spec, 
 }
 
 bool isMovable(const SceneSpec& spec, const std::string& name) {
-  return std::any_of(spec.bodies.begin(), spec.bodies.end(),
-                     [&](const BodySpec& b) { return b.family == name || b.name == name; }) ||
-         std::any_of(spec.cloths.begin(), spec.cloths.end(),
-                     [&](const ClothSpec& cloth) { return cloth.name == name; });
+  const Named* named = spec.names.find(name);
+  return named && named->of != Named::Of::solid;
 }
 
 }  // namespace smokebox

@@ -10,6 +10,11 @@
 
 namespace smokebox {
 
+/// Puts a thing into the scene's list, and its name into the scene's table.
+void addNamed(SceneSpec& spec, SolidSpec solid);
+void addNamed(SceneSpec& spec, BodySpec body);
+void addNamed(SceneSpec& spec, ClothSpec cloth);
+
 /// Reports a name that is empty, has a dot, stands for the world or belongs to another thing.
 void checkNewName(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name);
 /// Reports a name that no path could use.

@@ -124,7 +124,7 @@ void addCopies(const Block& block, const BodySpec& first, const std::vector<Plac
       body.pose.position = centre - transformed(kind.centre, Pose{{}, body.pose.angleRad});
       body.pose.position = body.pose.position + Vec2{step.x * block.spacing.x, step.y * block.spacing.y};
       if (repeated || origin.times > 1) body.name += "." + std::to_string(time * count + k);
-      spec.bodies.push_back(std::move(body));
+      addNamed(spec, std::move(body));
     }
 }
 
@@ -153,12 +153,11 @@ int readBody(Reader& reader, const YamlNode& node, const std::string& name, cons
   if (map.text("name", body.name)) {
     checkNewName(reader, *map.find("name"), spec, body.name);
   } else {
-    const std::vector<std::string> names = namesOfThings(spec, true);
     long number = origin.item;
     do
       body.name =
           (origin.particle ? "particle " : "body ") + std::to_string(++number + (origin.later ? 1 : 0));
-    while (std::find(names.begin(), names.end(), body.name) != names.end());
+    while (spec.names.find(body.name));
   }
   body.family = body.name;
 
@@ -201,7 +200,7 @@ int readBody(Reader& reader, const YamlNode& node, const std::string& name, cons
     // Its name stays known, so that nothing else is reported because of it.
     body.shape = std::make_shared<const Shape>(CircleShape{1});
     body.pose = own;
-    spec.bodies.push_back(std::move(body));
+    addNamed(spec, std::move(body));
     return 1;
   }
   const long copies = block.grid[0] * block.grid[1] * origin.times;

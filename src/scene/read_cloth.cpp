@@ -58,10 +58,13 @@ void readPinned(Reader& reader, const YamlNode& node, const std::string& name, C
 void readCloth(Reader& reader, const YamlNode& node, const std::string& name, SceneSpec& spec) {
   MapReader map(reader, node, name);
   ClothSpec cloth;
-  if (map.text("name", cloth.name))
+  if (map.text("name", cloth.name)) {
     checkNewName(reader, *map.find("name"), spec, cloth.name);
-  else
-    cloth.name = "cloth " + std::to_string(spec.cloths.size() + 1);
+  } else {
+    std::size_t number = spec.cloths.size();
+    do cloth.name = "cloth " + std::to_string(++number);
+    while (spec.names.find(cloth.name));
+  }
   cloth.size = {1, 1};
   if (map.required("corner", "its lower left, [x, y]")) map.vector("corner", cloth.corner);
   if (map.required("size", "width and height, metres")) map.vector("size", cloth.size, kPositive);
@@ -93,7 +96,7 @@ void readCloth(Reader& reader, const YamlNode& node, const std::string& name, Sc
   readGroups(map, cloth.ignore);
   if (const YamlNode* pinned = map.find("pinned")) readPinned(reader, *pinned, inside(name, "pinned"), cloth);
   map.finish();
-  spec.cloths.push_back(std::move(cloth));
+  addNamed(spec, std::move(cloth));
 }
 
 }  // namespace

@@ -91,17 +91,15 @@ MotionScript readMotion(Reader& reader, const YamlNode& node, const std::string&
   return motion;
 }
 
-SolidSpec readSolid(Reader& reader, const YamlNode& node, const std::string& name, const SceneSpec& spec,
-                    const std::vector<SolidSpec>& before) {
+SolidSpec readSolid(Reader& reader, const YamlNode& node, const std::string& name, const SceneSpec& spec) {
   MapReader map(reader, node, name);
   SolidSpec solid;
   if (map.text("name", solid.name)) {
     const YamlNode& where = *map.find("name");
     checkName(reader, where, solid.name);
-    for (const SolidSpec& other : before)
-      if (other.name == solid.name) reader.error(where.mark, "a second solid named `" + solid.name + "`");
+    if (spec.names.find(solid.name)) reader.error(where.mark, "a second solid named `" + solid.name + "`");
   } else {
-    solid.name = "solid " + std::to_string(before.size() + 1);
+    solid.name = "solid " + std::to_string(spec.solids.size() + 1);
   }
 
   Pose rest;
@@ -173,8 +171,7 @@ void readSolids(MapReader& scene, SceneSpec& spec) {
   const YamlNode* node = scene.find("solids");
   if (!node || !scene.reader().isList(*node, "solids")) return;
   for (std::size_t k = 0; k < node->items.size(); ++k)
-    spec.solids.push_back(
-        readSolid(scene.reader(), *node->items[k], "solids." + std::to_string(k), spec, spec.solids));
+    addNamed(spec, readSolid(scene.reader(), *node->items[k], "solids." + std::to_string(k), spec));
 }
 
 void readProbes(MapReader& scene, SceneSpec& spec) {

@@ -17,6 +17,7 @@
 #include "geometry/walls.h"
 #include "scene/expression.h"
 #include "scene/motion.h"
+#include "scene/name_table.h"
 #include "scene/rigid_spec.h"
 
 namespace smokebox {
@@ -220,6 +221,7 @@ struct SceneSpec {
   std::vector<SpringSpec> springs;
   std::vector<JointSpec> joints;
   std::vector<ClothSpec> cloths;
+  NameTable names;  // of solids, bodies (of all copies, and of each) and cloths
   std::vector<EventSpec> events;
   std::vector<ProbeSpec> probes;
   ViewSpec view;
