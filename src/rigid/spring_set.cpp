@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/hash.h"
 #include "rigid/islands.h"
@@ -14,6 +15,7 @@ int SpringSet::add(const SpringDef& def, const Bodies&) {
   spring.def = def;
   springs_.push_back(spring);
   fresh_ = true;
+  firstAt_.clear();
   ++there_;
   stale_ = true;
   return count() - 1;
@@ -29,9 +31,25 @@ void SpringSet::remove(int spring) {
   stale_ = true;
 }
 
+void SpringSet::listByBody() {
+  const auto eachEnd = [&](auto&& visit) {
+    for (int k = 0; k < count(); ++k)
+      for (const int body : {springs_[k].def.from.body, springs_[k].def.to.body})
+        if (body >= 0) visit(body, k);
+  };
+  int bodies = 0;
+  eachEnd([&](int body, int) { bodies = std::max(bodies, body + 1); });
+  firstAt_.assign(bodies + 2, 0);
+  eachEnd([&](int body, int) { ++firstAt_[body + 2]; });
+  std::partial_sum(firstAt_.begin(), firstAt_.end(), firstAt_.begin());
+  springsAt_.resize(firstAt_.back());
+  eachEnd([&](int body, int spring) { springsAt_[firstAt_[body + 1]++] = spring; });
+}
+
 void SpringSet::removeAt(int body) {
-  for (int k = 0; k < count(); ++k)
-    if (springs_[k].def.from.body == body || springs_[k].def.to.body == body) remove(k);
+  if (firstAt_.empty()) listByBody();
+  if (body + 2 > static_cast<int>(firstAt_.size())) return;
+  for (int at = firstAt_[body]; at < firstAt_[body + 1]; ++at) remove(springsAt_[at]);
 }
 
 void SpringSet::moveEnd(int spring, Vec2 to) {

@@ -53,13 +53,15 @@ class SpringSet {
 
  private:
   void layOut(const Bodies& bodies);
+  void listByBody();
   double distance(int spring, const Bodies& bodies) const;
   void push(int spring, Bodies& bodies, double share, const std::vector<char>* fresh) const;
 
   std::vector<Spring> springs_;
   std::vector<SpringIsland> islands_;
-  std::vector<SpringSheet> sheets_;  // one for each group that hangs together
-  std::vector<int> sheetOf_;         // by spring; -1: it is in an island
+  std::vector<SpringSheet> sheets_;       // one for each group that hangs together
+  std::vector<int> sheetOf_;              // by spring; -1: it is in an island
+  std::vector<int> firstAt_, springsAt_;  // of each body; firstAt_ is empty: to be listed
   std::vector<char> moved_;  // by body: 1 if it could move when springs were laid out; 2: no spring is there
   StepClock clock_;
   double h_ = 0;  // of the last sub-step, s

@@ -53,6 +53,26 @@ TEST(RigidSpring, SwingsWithItsFrequencyToFourthOrder) {
   EXPECT_NEAR(std::log2(errors[0] / errors[2]) / 2, 4, 0.2);
 }
 
+TEST(RigidSpring, GoesWithEitherOfItsBodies) {
+  // Truth: all springs at a body that is removed and no others, those too that came after the last removal.
+  LinksWorld world;
+  for (int k = 0; k < 4; ++k) world.particle({1.0 * k, 0}, 1);
+  const auto join = [&](int a, int b) { world.spring({a, {}}, {b, {}}, 1, 10, 0); };
+  join(0, 1), join(1, 2), join(2, 3), join(3, -1), join(0, 2);
+  const auto there = [&] {
+    std::vector<bool> all;
+    for (int k = 0; k < world.springs.count(); ++k) all.push_back(world.springs.isThere(k));
+    return all;
+  };
+  world.springs.removeAt(1);
+  EXPECT_EQ(there(), (std::vector<bool>{false, false, true, true, true}));
+  join(0, 3);
+  world.springs.removeAt(0);
+  EXPECT_EQ(there(), (std::vector<bool>{false, false, true, true, false, false}));
+  world.springs.removeAt(9);
+  EXPECT_EQ(world.springs.removed(), 4);
+}
+
 TEST(RigidSpring, DecaysAsItsDampingSays) {
   // Truth: exp(-c t / 2m) cos(w t), w = sqrt(k / m - (c / 2m)^2) = 9.949874 for k = 100, c = 2.
   const double exact = 2 * kPi / std::sqrt(99.0);
