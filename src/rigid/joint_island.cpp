@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "rigid/islands.h"
 #include "rigid/spring_row.h"
@@ -16,6 +17,8 @@ constexpr double kMostGain = 1.02;
 constexpr int kLastToJoin = 8;  // iterations after which drives only let go
 // Added to the diagonal, as a share of it: joints that say the same thing twice stay solvable.
 constexpr double kSoftening = 1e-10;
+// ... of those that are open: where they pull against each other the forces have bounds.
+constexpr double kSofteningOpen = 0.5;
 // What a gap may shrink by in a sub-step, as a share of the joint's reach: a joint that does not fit when it
 // is made, or is torn apart by a script, closes within tens of sub-steps.
 constexpr double kClosing = 0.01;
@@ -102,7 +105,7 @@ void JointIsland::apply(const Link& link, const JointRow& impulse, Bodies& bodie
 
 void JointIsland::warmStart(std::vector<Joint>& joints, Bodies& bodies, double h) {
   place(bodies, 0);
-  linear_ = curved_ = false;
+  linear_ = curved_ = isOpen_ = false;
   phase_ = Phase::asTheyAre;
   for (Link& link : links_) {
     Joint& joint = joints[link.joint];
@@ -127,13 +130,16 @@ void JointIsland::prepare(Link& link, Joint& joint, double h) {
   const double away = std::fabs(now.a.position.x) + std::fabs(now.a.position.y) +
                       std::fabs(now.b.position.x) + std::fabs(now.b.position.y);
   const int kept = equalities(def.kind);
+  link.open = {};
   for (int r = 0; r < 3; ++r) {
     const bool angle = isAngle(def.kind, r);
     link.tolerance[r] = angle ? 1e-13 + 1e-15 * (std::fabs(now.angleA) + std::fabs(now.angleB))
                               : 1e-13 * link.reach + 1e-15 * away;
     const double most = kClosing * (angle ? 1.0 : link.reach);
     link.goal[r] = link.gap[r] - std::clamp(link.gap[r], -most, most);
-    if (r < kept) joint.on[r] = true;
+    if (r >= kept) continue;
+    joint.on[r] = true;
+    isOpen_ |= link.open[r] = std::fabs(link.gap[r]) > most;
   }
   if (hasDrive(def)) {
     auto rate = [&](double room, double inside) {
@@ -144,6 +150,8 @@ void JointIsland::prepare(Link& link, Joint& joint, double h) {
     const double upper = def.kind == JointKind::rope ? def.length : def.upper;
     drive.low = rate(lower - link.gap[2], -1);
     drive.high = rate(upper - link.gap[2], 1);
+    const double beyond = std::max(lower - link.gap[2], link.gap[2] - upper);
+    isOpen_ |= link.open[2] = beyond > kClosing * (isAngle(def.kind, 2) ? 1.0 : link.reach);
     drive.push = def.kind == JointKind::rope ? 0 : def.motorLimit * h;
     drive.speed = std::clamp(def.motorSpeed, drive.low, std::max(drive.low, drive.high));
   } else if (kept < 3) {
@@ -203,6 +211,15 @@ double JointIsland::kinetic(const Bodies& bodies) const {
   return sum;
 }
 
+bool JointIsland::mark(std::vector<char>& marked) const {
+  const auto isMarked = [&](const Place& p) { return marked[p.body] != 0; };
+  const bool any = std::any_of(places_.begin(), places_.end(), isMarked);
+  if (!isTorn() && (!any || std::all_of(places_.begin(), places_.end(), isMarked))) return false;
+  bool changed = false;
+  for (const Place& p : places_) changed |= std::exchange(marked[p.body], 1) == 0;
+  return changed;
+}
+
 void JointIsland::goLinear(const std::vector<Joint>& joints) {
   linear_ = true;
   for (Link& link : links_) link.atEnd = link.rows;
@@ -227,7 +244,7 @@ void JointIsland::factor(const std::vector<Joint>& joints) {
                            inertiaBetween(link.rows.b[i], link.rows.b[i], b);
       // A row that moves nothing (the angle between two particles) is left out.
       if (on[i] && link.ownInertia[i] > 0)
-        block[4 * i] += kSoftening * link.ownInertia[i];
+        block[4 * i] += (link.open[i] ? kSofteningOpen : kSoftening) * link.ownInertia[i];
       else
         block[4 * i] = 1;
     }

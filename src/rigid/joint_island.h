@@ -38,6 +38,10 @@ class JointIsland {
   void warmStart(std::vector<Joint>& joints, Bodies& bodies, double h);
   /// Until it holds. Returns the largest rate, m/s, that it found and took away.
   double solve(std::vector<Joint>& joints, Bodies& bodies, double h);
+  /// Did no motion satisfy it in this sub-step, or is a joint farther open than a sub-step closes?
+  bool isTorn() const { return !settled_ || linear_ || isOpen_; }
+  /// Marks all its bodies if it is torn or one of them is marked. False: nothing new.
+  bool mark(std::vector<char>& marked) const;
 
   std::size_t bytes() const;
 
@@ -58,9 +62,10 @@ class JointIsland {
     JointRow goal{};               // at its end, of equalities
     JointRow ownInertia{};         // rate of each row from its own impulse
     Drive drive;
-    double driveGoal = 0;  // rate
-    double reach = 0;      // m
-    JointRow tolerance{};  // of gaps
+    double driveGoal = 0;        // rate
+    std::array<bool, 3> open{};  // rows: farther than a sub-step closes
+    double reach = 0;            // m
+    JointRow tolerance{};        // of gaps
   };
   struct Coupling {
     int slot = 0, row = 0, column = 0, body = 0;
@@ -97,6 +102,7 @@ class JointIsland {
   Phase phase_ = Phase::asTheyAre;
   double probeEnergy_ = 0;  // of the probe's solution, J
   bool linear_ = false, curved_ = false, settled_ = true;
+  bool isOpen_ = false;
 };
 
 }  // namespace smokebox

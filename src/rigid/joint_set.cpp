@@ -88,6 +88,16 @@ double JointSet::solve(Bodies& bodies, double h) {
   return change;
 }
 
+bool JointSet::anyTorn() const {
+  return std::any_of(islands_.begin(), islands_.end(), [](const JointIsland& each) { return each.isTorn(); });
+}
+
+bool JointSet::mark(std::vector<char>& marked) const {
+  bool changed = false;
+  for (const JointIsland& island : islands_) changed |= island.mark(marked);
+  return changed;
+}
+
 void JointSet::endStep(Bodies&) {}
 
 double JointSet::tension(int joint) const {

@@ -23,6 +23,9 @@ class JointSet {
   void warmStart(Bodies& bodies, double h);
   /// One sweep over all; the largest change of a relative velocity, m/s.
   double solve(Bodies& bodies, double h);
+  bool anyTorn() const;
+  /// Marks by body who hangs on torn joints, or together with one that is marked. False: nothing new.
+  bool mark(std::vector<char>& marked) const;
   void endStep(Bodies& bodies);
 
   /// Size of the force that holds the bodies together in the last sub-step, N; of a rope, its tension.

@@ -62,25 +62,6 @@ void RigidSystem::State::warmStartAll(double h) {
   joints.warmStart(bodies, h);
 }
 
-// Joints that no motion can satisfy (a chain drawn straight between two nails, and something falls on it) ask
-// for impulses without bound: what hangs on joints gets no faster than anything was, but for a little in each
-// sub-step.
-void RigidSystem::State::yieldTorn() {
-  constexpr double kGrowth = 1.25, kMore = 2;  // m/s
-  double fastest = 0;
-  for (int b = 0; b < bodies.count(); ++b)
-    if (bodies.there[b]) fastest = std::max(fastest, length(start[b].linear()));
-  const double most = kGrowth * fastest + kMore;
-  for (int b = kWalls; b < bodies.count(); ++b) {
-    Motion& v = bodies.velocity[b];
-    const double speed = length(v.linear());
-    if (!bodies.moves(b) || speed <= most) continue;
-    v.x *= most / speed;
-    v.y *= most / speed;
-    v.turn *= most / speed;
-  }
-}
-
 void RigidSystem::State::findFlying(double h) {
   constexpr double kTouch = 1e-3;  // of what gravity does
   const double least = kTouch * h * length(gravity);

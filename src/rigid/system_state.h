@@ -94,6 +94,7 @@ struct RigidSystem::State {
   Carried carried = Carried::nothing;
   bool firstOfStep = false;  // sub-step
   bool stirred = false, anyStruck = false, mayBounce = false;
+  std::vector<char> torn;   // hangs on joints that no motion satisfies, or touches what does
   std::vector<Motion> way;  // of a sub-step, where pairs may pass through each other
 
   /// What a time does to a body's velocity by itself: gravity, and damping that decays exponentially.
