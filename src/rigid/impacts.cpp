@@ -75,8 +75,52 @@ void Impacts::schedule(const Bodies& bodies, const std::vector<Motion>& way,
   std::push_heap(heap_.begin(), heap_.end());
 }
 
+void Impacts::pushTied(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse) {
+  const Motion a = bodies.velocity[contact.a], b = bodies.velocity[contact.b];
+  bodies.push(contact.a, armA, -impulse);
+  bodies.push(contact.b, armB, impulse);
+  const Motion &nowA = bodies.velocity[contact.a], &nowB = bodies.velocity[contact.b];
+  joints_.react(bodies, contact.a, {nowA.x - a.x, nowA.y - a.y, nowA.turn - a.turn}, contact.b,
+                {nowB.x - b.x, nowB.y - b.y, nowB.turn - b.turn});
+}
+
+double Impacts::response(Bodies& bodies, const Contact& contact, const ContactPoint& p, Vec2 d,
+                         const ContactPoint& q, Vec2 e) {
+  if (!isTied(contact)) {
+    const InverseMass &ma = bodies.inverse[contact.a], &mb = bodies.inverse[contact.b];
+    return dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
+           mb.inertia * cross(p.armB, d) * cross(q.armB, e);
+  }
+  const auto parting = [&] {
+    return dot(d, bodies.velocityAt(contact.b, p.armB) - bodies.velocityAt(contact.a, p.armA));
+  };
+  before_.clear();
+  for (const int body : together_) {
+    before_.push_back(bodies.velocity[body]);
+    bodies.velocity[body] = {};
+  }
+  const double still = parting();
+  pushTied(bodies, contact, q.armA, q.armB, e);
+  const double made = parting() - still;
+  for (std::size_t k = 0; k < together_.size(); ++k) bodies.velocity[together_[k]] = before_[k];
+  return made;
+}
+
 void Impacts::push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse, double time,
                    std::vector<Motion>& way) {
+  if (isTied(contact)) {
+    before_.clear();
+    for (const int body : together_) before_.push_back(bodies.velocity[body]);
+    pushTied(bodies, contact, armA, armB, impulse);
+    for (std::size_t k = 0; k < together_.size(); ++k) {
+      const Motion &after = bodies.velocity[together_[k]], &before = before_[k];
+      Motion& w = way[together_[k]];
+      w.x -= time * (after.x - before.x);
+      w.y -= time * (after.y - before.y);
+      w.turn -= time * (after.turn - before.turn);
+    }
+    return;
+  }
   auto one = [&](int body, Vec2 arm, Vec2 j) {
     const Motion before = bodies.velocity[body];
     bodies.push(body, arm, j);
@@ -141,7 +185,7 @@ bool Impacts::meet(const Bodies& bodies, const std::vector<Motion>& way, Contact
 
 bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, double& now,
                      std::vector<Motion>& way) {
-  const InverseMass ma = bodies.inverse[contact.a], mb = bodies.inverse[contact.b];
+  if (isTied(contact)) joints_.beginImpact(bodies, contact.a, contact.b);
   if (!meet(bodies, way, contact, h, now)) {
     // They pass each other by: nothing holds them in this sub-step.
     for (int k = 0; k < contact.count; ++k) {
@@ -187,9 +231,9 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
     return false;
   }
 
-  auto response = [&](const ContactPoint& p, Vec2 d, const ContactPoint& q, Vec2 e) {
-    return dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
-           mb.inertia * cross(p.armB, d) * cross(q.armB, e);
+  if (isTied(contact)) joints_.listTogether(bodies, contact.a, contact.b, together_);
+  auto responseOf = [&](const ContactPoint& p, Vec2 d, const ContactPoint& q, Vec2 e) {
+    return response(bodies, contact, p, d, q, e);
   };
   auto approaching = [&](const ContactPoint& p) { return partingSpeed(bodies, contact, p) + late; };
   auto pushNormal = [&](const ContactPoint& p, double impulse) {
@@ -199,9 +243,9 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   double normal[2] = {0, 0};
   const double keep = 1 + contact.bounce;
   for (int k = 0; k < count; ++k) contact.approach = std::max(contact.approach, -approaching(struck[k]));
-  const double k00 = response(struck[0], n, struck[0], n);
-  const double k01 = count == 2 ? response(struck[0], n, struck[1], n) : 0;
-  const double k11 = count == 2 ? response(struck[1], n, struck[1], n) : 0;
+  const double k00 = responseOf(struck[0], n, struck[0], n);
+  const double k01 = count == 2 ? responseOf(struck[0], n, struck[1], n) : 0;
+  const double k11 = count == 2 ? responseOf(struck[1], n, struck[1], n) : 0;
   const double det = k00 * k11 - k01 * k01;
   if (count == 2 && det > 1e-9 * k00 * k11) {  // both at once
     const double k[4] = {k00, k01, k11, 1 / det};
@@ -217,7 +261,7 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
     const Vec2 slip =
         bodies.velocityAt(contact.b, struck[k].armB) - bodies.velocityAt(contact.a, struck[k].armA);
     const double most = contact.friction * normal[k];
-    const double stop = -dot(tangent, slip) / response(struck[k], tangent, struck[k], tangent);
+    const double stop = -dot(tangent, slip) / responseOf(struck[k], tangent, struck[k], tangent);
     push(bodies, contact, struck[k].armA, struck[k].armB, std::clamp(stop, -most, most) * tangent, now, way);
   }
   contact.struck = true;
@@ -236,6 +280,7 @@ double Impacts::leastOf(const Contact& contact, double least) const {
 }
 
 void Impacts::begin(const std::vector<char>& flying) {
+  if (!joints_.empty()) joints_.beginImpacts();
   struckAt_.assign(flying.size(), 0);
   times_.assign(flying.size(), 0);
   flying_ = flying;
@@ -280,11 +325,20 @@ void Impacts::run(Bodies& bodies, const std::vector<Contact*>& contacts, double 
       }
     ++count_;
     ++inStep_;
-    for (const int body : {contact.a, contact.b}) {
-      if (!bodies.moves(body)) continue;
+    const auto scheduleAt = [&](int body) {
       for (int at = firstAt_[body]; at >= 0; at = at % 2 == 0 ? nextA_[at / 2] : nextB_[at / 2])
         schedule(bodies, way, contacts, at / 2, h, least);
+    };
+    if (isTied(contact)) {  // all that hang together have been struck
+      for (const int body : together_) {
+        struckAt_[body] = std::max(struckAt_[body], now);
+        times_[body] = std::max(times_[body], 1);
+      }
+      for (const int body : together_) scheduleAt(body);
+      continue;
     }
+    for (const int body : {contact.a, contact.b})
+      if (bodies.moves(body)) scheduleAt(body);
   }
 }
 

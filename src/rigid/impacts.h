@@ -12,11 +12,14 @@
 
 #include "rigid/bodies.h"
 #include "rigid/contact.h"
+#include "rigid/joint_set.h"
 
 namespace smokebox {
 
 class Impacts {
  public:
+  explicit Impacts(JointSet& joints) : joints_(joints) {}
+
   void beginStep() { inStep_ = 0; }
   /// Before the first run of a sub-step. `flying`, by body: nothing pressed on it in the last one.
   void begin(const std::vector<char>& flying);
@@ -59,7 +62,16 @@ class Impacts {
   void push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse, double time,
             std::vector<Motion>& way);
   Vec2 acceleration(const Bodies& bodies, const Contact& contact) const;
+  bool isTied(const Contact& contact) const { return joints_.holds(contact.a) || joints_.holds(contact.b); }
+  /// Velocities after an impulse on b, with what joints make of it.
+  void pushTied(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse);
+  /// How fast b parts from a along d at p, by a unit impulse along e at q.
+  double response(Bodies& bodies, const Contact& contact, const ContactPoint& p, Vec2 d,
+                  const ContactPoint& q, Vec2 e);
 
+  JointSet& joints_;
+  std::vector<int> together_;   // that the contact at hand changes, if joints hold one of its bodies
+  std::vector<Motion> before_;  // their velocities
   Vec2 gravity_;
   long count_ = 0, inStep_ = 0;
   std::vector<double> struckAt_;

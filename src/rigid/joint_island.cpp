@@ -227,11 +227,16 @@ void JointIsland::goLinear(const std::vector<Joint>& joints) {
 }
 
 void JointIsland::factor(const std::vector<Joint>& joints) {
+  for (Link& link : links_) link.in = joints[link.joint].on;
+  factor();
+}
+
+void JointIsland::factor() {
   const InverseMass fixed;
   matrix_.clear();
   for (int k = 0; k < matrix_.count(); ++k) {
     Link& link = links_[k];
-    const std::array<bool, 3>& on = joints[link.joint].on;
+    const std::array<bool, 3>& on = link.in;
     const InverseMass& a = link.a < 0 ? fixed : places_[link.placeA].inverse;
     const InverseMass& b = link.b < 0 ? fixed : places_[link.placeB].inverse;
     BlockFactor<3>::Block& block = matrix_.diagonal(k);
@@ -251,7 +256,7 @@ void JointIsland::factor(const std::vector<Joint>& joints) {
   }
   for (const Coupling& c : couplings_) {
     const Link &row = links_[c.row], &column = links_[c.column];
-    const std::array<bool, 3>&rowOn = joints[row.joint].on, &columnOn = joints[column.joint].on;
+    const std::array<bool, 3>&rowOn = row.in, &columnOn = column.in;
     const InverseMass& m = places_[row.a == c.body ? row.placeA : row.placeB].inverse;
     // A joint of a body with itself would have it on both sides; its ends are two bodies.
     const bool rowAtA = row.a == c.body, columnAtA = column.a == c.body;
@@ -404,6 +409,73 @@ double JointIsland::solve(std::vector<Joint>& joints, Bodies& bodies, double h) 
       apply(links_[k], unknowns_[k], bodies);
     }
   }
+}
+
+void JointIsland::beginImpacts(const std::vector<Joint>& joints, Bodies& bodies) {
+  place(bodies, 0);
+  for (Place& p : places_) p.inverse = bodies.inverse[p.body];
+  for (Link& link : links_) {
+    const Joint& joint = joints[link.joint];
+    const int kept = equalities(joint.def.kind);
+    link.rows = link.atEnd = jacobiansOf(joint.def, placeOf(link));
+    for (int r = 0; r < 3; ++r) link.in[r] = r < kept;
+    link.side = 0;
+    link.open = {};
+    if (!hasDrive(joint.def) || !joint.on[2]) continue;
+    const double impulse = joint.impulse[2];
+    link.side = std::fabs(impulse) <= link.drive.push ? 0 : impulse > 0 ? 1 : -1;
+    link.in[2] = link.side != 0;
+  }
+  factor();
+  // The velocities are those of the last sub-step's middle: an impact is exact where they obey the joints
+  // now.
+  for (std::size_t k = 0; k < links_.size(); ++k) {
+    const Link& link = links_[k];
+    const Motion none;
+    const Motion &a = link.a < 0 ? none : bodies.velocity[link.a],
+                 &b = link.b < 0 ? none : bodies.velocity[link.b];
+    for (int r = 0; r < 3; ++r)
+      unknowns_[k][r] =
+          link.in[r] && link.ownInertia[r] > 0 ? -link.rows.a[r].rate(a) - link.rows.b[r].rate(b) : 0;
+  }
+  matrix_.solve(unknowns_);
+  for (std::size_t k = 0; k < links_.size(); ++k) apply(links_[k], unknowns_[k], bodies);
+}
+
+void JointIsland::findReaction(const std::array<int, 2>& struck, const std::array<Motion, 2>& change) {
+  for (std::size_t k = 0; k < links_.size(); ++k) {
+    const Link& link = links_[k];
+    unknowns_[k] = {};
+    for (int r = 0; r < 3; ++r) {
+      if (!link.in[r] || !(link.ownInertia[r] > 0)) continue;
+      for (int s = 0; s < 2; ++s) {
+        if (struck[s] < 0) continue;
+        if (link.a == struck[s]) unknowns_[k][r] -= link.rows.a[r].rate(change[s]);
+        if (link.b == struck[s]) unknowns_[k][r] -= link.rows.b[r].rate(change[s]);
+      }
+    }
+  }
+  matrix_.solve(unknowns_);
+}
+
+void JointIsland::react(const std::array<int, 2>& struck, const std::array<Motion, 2>& change,
+                        Bodies& bodies) {
+  findReaction(struck, change);
+  // Ropes and limits only hold one way: those that would pull the other way let go.
+  bool anyGoes = false;
+  for (std::size_t k = 0; k < links_.size(); ++k) {
+    if (links_[k].side == 0 || unknowns_[k][2] * links_[k].side >= 0) continue;
+    links_[k].in[2] = false;
+    anyGoes = true;
+  }
+  if (anyGoes) {
+    factor();
+    findReaction(struck, change);
+  }
+  for (std::size_t k = 0; k < links_.size(); ++k) apply(links_[k], unknowns_[k], bodies);
+  if (!anyGoes) return;
+  for (Link& link : links_) link.in[2] = link.in[2] || link.side != 0;
+  factor();
 }
 
 std::size_t JointIsland::bytes() const {

@@ -38,6 +38,17 @@ class JointIsland {
   void warmStart(std::vector<Joint>& joints, Bodies& bodies, double h);
   /// Until it holds. Returns the largest rate, m/s, that it found and took away.
   double solve(std::vector<Joint>& joints, Bodies& bodies, double h);
+  /// Before impacts, which last no time: the joints as the bodies are now, with the ropes and limits that
+  /// held in the last sub-step, and no motor.
+  void beginImpacts(const std::vector<Joint>& joints, Bodies& bodies);
+  /// Two bodies (-1: none) were changed at once: adds what the joints make of it to the velocities of all.
+  void react(const std::array<int, 2>& struck, const std::array<Motion, 2>& change, Bodies& bodies);
+  /// visit(body) for all that hang on it and move.
+  template <class Visit>
+  void eachBody(const Bodies& bodies, Visit&& visit) const {
+    for (const Place& p : places_)
+      if (bodies.moves(p.body)) visit(p.body);
+  }
   /// Did no motion satisfy it in this sub-step, or is a joint farther open than a sub-step closes?
   bool isTorn() const { return !settled_ || linear_ || isOpen_; }
   /// Marks all its bodies if it is torn or one of them is marked. False: nothing new.
@@ -63,6 +74,8 @@ class JointIsland {
     JointRow ownInertia{};         // rate of each row from its own impulse
     Drive drive;
     double driveGoal = 0;        // rate
+    std::array<bool, 3> in{};    // rows in the matrix
+    int side = 0;                // in impacts: the sign of a drive's impulse; 0: it has no drive that holds
     std::array<bool, 3> open{};  // rows: farther than a sub-step closes
     double reach = 0;            // m
     JointRow tolerance{};        // of gaps
@@ -84,6 +97,8 @@ class JointIsland {
   JointRow ratesOf(const Link& link, const Joint& joint, const Bodies& bodies, double h) const;
   bool chooseStair(Link& link, Joint& joint, double rate, bool mayJoin, double& impulse) const;
   void factor(const std::vector<Joint>& joints);
+  void factor();
+  void findReaction(const std::array<int, 2>& struck, const std::array<Motion, 2>& change);
   void prepare(Link& link, Joint& joint, double h);
   void stiffen(const std::vector<Joint>& joints, Bodies& bodies, double h);
   void stiffenAgain(const std::vector<Joint>& joints, Bodies& bodies, double h);

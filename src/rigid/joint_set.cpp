@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/hash.h"
 #include "rigid/islands.h"
@@ -55,6 +56,7 @@ void JointSet::beginStep(Bodies& bodies, double, int) {
 void JointSet::layOut(const Bodies& bodies) {
   stale_ = false;
   islands_.clear();
+  islandOf_.assign(bodies.count(), -1);
   std::vector<int> numbers;
   std::vector<std::array<int, 2>> ends;
   for (int k = 0; k < count(); ++k) {
@@ -66,6 +68,7 @@ void JointSet::layOut(const Bodies& bodies) {
     for (int& link : group) link = numbers[link];
     JointIsland island;
     if (island.layOut(group, joints_, bodies)) {
+      island.eachBody(bodies, [&](int body) { islandOf_[body] = static_cast<int>(islands_.size()); });
       islands_.push_back(std::move(island));
       continue;
     }
@@ -86,6 +89,37 @@ double JointSet::solve(Bodies& bodies, double h) {
   double change = 0;
   for (JointIsland& island : islands_) change = std::max(change, island.solve(joints_, bodies, h));
   return change;
+}
+
+void JointSet::listTogether(const Bodies& bodies, int a, int b, std::vector<int>& all) const {
+  all.clear();
+  const auto add = [&](int body) { all.push_back(body); };
+  const int ofA = holds(a) ? islandOf_[a] : -1, ofB = holds(b) ? islandOf_[b] : -1;
+  if (ofA >= 0)
+    islands_[ofA].eachBody(bodies, add);
+  else if (bodies.moves(a))
+    add(a);
+  if (ofB >= 0 && ofB != ofA)
+    islands_[ofB].eachBody(bodies, add);
+  else if (ofB < 0 && bodies.moves(b))
+    add(b);
+}
+
+void JointSet::beginImpact(Bodies& bodies, int a, int b) {
+  for (const int body : {a, b})
+    if (holds(body) && !std::exchange(isReady_[islandOf_[body]], 1))
+      islands_[islandOf_[body]].beginImpacts(joints_, bodies);
+}
+
+void JointSet::react(Bodies& bodies, int a, const Motion& changeA, int b, const Motion& changeB) {
+  const int ofA = holds(a) ? islandOf_[a] : -1, ofB = holds(b) ? islandOf_[b] : -1;
+  const auto one = [&](int island, const std::array<int, 2>& struck) {
+    if (island < 0) return;
+    islands_[island].react(struck, {changeA, changeB}, bodies);
+  };
+  if (ofA == ofB) return one(ofA, {a, b});
+  one(ofA, {a, -1});
+  one(ofB, {-1, b});
 }
 
 bool JointSet::anyTorn() const {

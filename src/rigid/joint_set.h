@@ -23,6 +23,14 @@ class JointSet {
   void warmStart(Bodies& bodies, double h);
   /// One sweep over all; the largest change of a relative velocity, m/s.
   double solve(Bodies& bodies, double h);
+  void beginImpacts() { isReady_.assign(islands_.size(), 0); }
+  /// Does the body hang on joints, of which an impact on it must know?
+  bool holds(int body) const { return body < static_cast<int>(islandOf_.size()) && islandOf_[body] >= 0; }
+  /// The bodies that an impact on these two changes, those two too if they move.
+  void listTogether(const Bodies& bodies, int a, int b, std::vector<int>& all) const;
+  /// The velocities of a and b were just changed at once: adds what joints make of it to those of all.
+  void beginImpact(Bodies& bodies, int a, int b);
+  void react(Bodies& bodies, int a, const Motion& changeA, int b, const Motion& changeB);
   bool anyTorn() const;
   /// Marks by body who hangs on torn joints, or together with one that is marked. False: nothing new.
   bool mark(std::vector<char>& marked) const;
@@ -41,6 +49,8 @@ class JointSet {
 
   std::vector<Joint> joints_;
   std::vector<JointIsland> islands_;
+  std::vector<int> islandOf_;               // by body; -1: none, or too dense
+  std::vector<char> isReady_;               // for impacts
   std::vector<std::array<char, 2>> moved_;  // by joint: whether its bodies could move when it was laid out
   bool stale_ = false;                      // the islands must be laid out anew
   double h_ = 0;                            // of the last sub-step, s

@@ -121,10 +121,10 @@ struct RigidSystem::State {
   std::vector<SolvedContact*> deepOnes;
   RoughContacts roughOnes;
   ConjugateSweeps conjugate;
-  Impacts impact;
-  Press press;
   SpringSet springs;
   JointSet joints;
+  Impacts impact{joints};
+  Press press;
 
   std::vector<Turn> turned;        // by how much since the step began
   std::vector<Touch> touches;      // in order once they are asked for

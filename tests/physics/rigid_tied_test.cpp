@@ -1,0 +1,203 @@
+// Bodies on joints: blows that go through the joints, and joints that no motion can satisfy.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/rigid_world.h"
+
+namespace smokebox {
+namespace {
+
+using test::bodyAt;
+using test::bodyShape;
+using test::RigidWorld;
+using test::solidAt;
+using test::solidShape;
+
+int pin(RigidWorld& world, int a, Vec2 atA, int b, Vec2 atB) {
+  JointDef def;
+  def.kind = JointKind::pin;
+  def.a = {a, atA};
+  def.b = {b, atB};
+  return world.system.addJoint(def);
+}
+
+int weld(RigidWorld& world, int a, Vec2 atA, int b, Vec2 atB) {
+  JointDef def;
+  def.kind = JointKind::weld;
+  def.a = {a, atA};
+  def.b = {b, atB};
+  return world.system.addJoint(def);
+}
+
+double energyOf(const RigidWorld& world) {
+  return world.system.totals().kineticEnergy + world.system.totals().potentialEnergy;
+}
+
+BodyDef bouncing(BodyDef def) {
+  def.bounce = 1;
+  return def;
+}
+
+TEST(RigidTied, ABlowMovesAllThatHangsTogether) {
+  // Truth: two welded boxes of 1 kg struck off the centre have the impulse as momentum, and its moment.
+  RigidWorld world;
+  const auto box = bodyShape(BoxShape{{1, 1}});
+  const int a = world.add(bodyAt(box, {4, 5}, 1)), b = world.add(bodyAt(box, {5, 5}, 1));
+  weld(world, a, {0.5, 0}, b, {-0.5, 0});
+  world.steps(10);
+  world.system.applyImpulse(b, {9, 5}, {0, 3});
+  world.steps(30);
+  EXPECT_NEAR(world.velocity(a).y + world.velocity(b).y, 3, 1e-9);
+  EXPECT_NEAR(world.spin(a), 3 * 4.5 / (2 * (1.0 / 6 + 0.25)), 0.001 * 16);
+}
+
+TEST(RigidTied, ABarGoesOnAboutItsPinAsFastAsItsMomentSays) {
+  // Truth: of a spin w about the centre the moment about the pin keeps I w; I_pin = I + m d^2.
+  RigidWorld world;
+  const int bar = world.add([&] {
+    BodyDef def = bodyAt(bodyShape(BoxShape{{4, 0.2}}), {52, 50}, 1);
+    def.spin = 4 * kPi;
+    return def;
+  }());
+  pin(world, -1, {50, 50}, bar, {-2, 0});
+  world.steps(60);
+  const double inertia = (16 + 0.04) / 12;
+  EXPECT_NEAR(world.spin(bar), 4 * kPi * inertia / (inertia + 4), 1e-3);
+}
+
+TEST(RigidTied, AJointElsewhereChangesNothing) {
+  // Truth: a bat strikes a ball the same whether or not something hangs on a pin far away.
+  Vec2 left[2];
+  for (const bool pinned : {false, true}) {
+    RigidWorld world;
+    BodyDef bat = bodyAt(bodyShape(BoxShape{{4, 0.2}}), {50, 50}, 10);
+    bat.spin = 4 * kPi;
+    world.add(bat);
+    const int ball = world.add(bodyAt(bodyShape(CircleShape{0.2}), {51.8, 50.35}, 1));
+    const int other = world.add(bodyAt(bodyShape(CircleShape{0.1}), {10, 10}, 1));
+    if (pinned) pin(world, -1, {10, 10}, other, {});
+    world.steps(15);
+    left[pinned] = world.velocity(ball);
+  }
+  EXPECT_GT(left[0].y, 15);
+  EXPECT_NEAR(left[1].x, left[0].x, 1e-9);
+  EXPECT_NEAR(left[1].y, left[0].y, 1e-9);
+}
+
+TEST(RigidTied, APinnedBarBouncesBackAsItCame) {
+  // Truth: bounce is on the speed of the point that strikes, whatever the pin does meanwhile.
+  for (const double bounce : {1.0, 0.5}) {
+    RigidWorld world;
+    const int bar = world.add([&] {
+      BodyDef def = bodyAt(bodyShape(BoxShape{{1, 0.1}}), {50.5, 50}, 1);
+      def.bounce = bounce;
+      def.spin = kPi / 2;
+      def.velocity = {0, kPi / 4};
+      return def;
+    }());
+    world.add(solidAt(solidShape(CircleShape{0.1}), {50.5, 50.9}));
+    pin(world, -1, {50, 50}, bar, {-0.5, 0});
+    world.seconds(2);
+    EXPECT_NEAR(world.spin(bar), -bounce * kPi / 2, 1e-3) << bounce;
+  }
+}
+
+TEST(RigidTied, ABallThatHitsAPinnedRodLeavesAsTheirMomentsSay) {
+  // Truth: 1 kg at 10 m/s, 0.8 m below the pin of a rod of 1 by 0.1 m: with I about the pin and r = 0.8,
+  // it keeps (r^2 - I) / (r^2 + I) of its speed, and the rod turns with 2 r v / (r^2 + I).
+  RigidWorld world;
+  BodyDef ball = bouncing(bodyAt(bodyShape(CircleShape{0.1}), {48.5, 50.2}, 1));
+  ball.velocity = {10, 0};
+  const int struck = world.add(ball);
+  const int rod = world.add(bouncing(bodyAt(bodyShape(BoxShape{{0.1, 1}}), {50, 50.5}, 1)));
+  pin(world, -1, {50, 51}, rod, {0, 0.5});
+  world.steps(12);
+  const double inertia = (1 + 0.01) / 12 + 0.25, r = 0.8, sum = r * r + inertia;
+  EXPECT_NEAR(world.velocity(struck).x, 10 * (r * r - inertia) / sum, 0.01);
+  EXPECT_NEAR(world.spin(rod), 2 * r * 10 / sum, 0.02);
+}
+
+TEST(RigidTied, WeldedBodiesBounceAsOneWould) {
+  // Truth: bounce 1 and no friction keep the energy, through a tilted weld and through a chain of pins.
+  RigidWorld world(test::closedBox(10, 10), {0, -10});
+  const auto disk = bodyShape(CircleShape{0.5});
+  const int a = world.add(bouncing(bodyAt(disk, {4.6, 3}, 1))),
+            b = world.add(bouncing(bodyAt(disk, {5.4, 3.9}, 1)));
+  weld(world, a, {0.4, 0.45}, b, {-0.4, -0.45});
+  const double before = energyOf(world);
+  double worst = 0;
+  for (int step = 0; step < 360; ++step) {
+    world.steps(1);
+    worst = std::max(worst, std::fabs(energyOf(world) - before));
+  }
+  std::printf("weld of two disks that bounces for 6 s: energy off by %.1e of it\n", worst / before);
+  EXPECT_LT(worst, 2e-3 * before);
+}
+
+TEST(RigidTied, AChainOfPinsBouncesOnAPost) {
+  // Truth: as above; a chain of twelve that folds over a post loses and gains little.
+  RigidWorld world(test::closedBox(10, 10), {0, -10});
+  std::vector<int> links;
+  for (int k = 0; k < 12; ++k)
+    links.push_back(world.add(bouncing(bodyAt(bodyShape(CapsuleShape{0.4, 0.05}), {2.25 + 0.5 * k, 5}))));
+  for (int k = 0; k < 11; ++k) pin(world, links[k], {0.25, 0}, links[k + 1], {-0.25, 0});
+  world.add(solidAt(solidShape(CircleShape{0.3}), {4.3, 2}));
+  const double before = energyOf(world);
+  double least = before, most = before;
+  for (int step = 0; step < 360; ++step) {
+    world.steps(1);
+    least = std::min(least, energyOf(world)), most = std::max(most, energyOf(world));
+  }
+  std::printf("chain on a post: energy between %.4f and %.4f of that at the start\n", least / before,
+              most / before);
+  EXPECT_GT(least, 0.9 * before);
+  EXPECT_LT(most, 1.03 * before);
+}
+
+TEST(RigidTied, AChainDrawnStraightFlingsNothing) {
+  // Truth: what falls on a chain between two nails that has no slack brings all the energy there is.
+  for (const int steps : {30, 60, 120, 240}) {
+    RigidWorld world(test::closedBox(10, 10), {0, -10});
+    std::vector<int> links;
+    for (int k = 0; k < 12; ++k) {
+      BodyDef def = bodyAt(bodyShape(BoxShape{{0.5, 0.1}}), {2.25 + 0.5 * k, 5});
+      def.ignore = 1;
+      links.push_back(world.add(def));
+    }
+    pin(world, -1, {2, 5}, links[0], {-0.25, 0});
+    for (int k = 0; k < 11; ++k) pin(world, links[k], {0.25, 0}, links[k + 1], {-0.25, 0});
+    pin(world, links[11], {0.25, 0}, -1, {8, 5});
+    world.add(bodyAt(bodyShape(CircleShape{0.3}), {5.1, 7}, 3 * kPi * 0.09));
+    const double before = energyOf(world);
+    double most = before;
+    for (int step = 0; step < 4 * steps; ++step) {
+      world.system.step(1.0 / steps);
+      most = std::max(most, energyOf(world));
+    }
+    EXPECT_LT(most, 1.05 * before) << steps;
+  }
+}
+
+TEST(RigidTied, RopesThatPullAgainstEachOtherHoldStill) {
+  // Truth: two ropes of 1 m to nails 3 m away on either side leave it where it is.
+  RigidWorld world(test::closedBox(10, 10), {0, -10});
+  const int body = world.add(bodyAt(bodyShape(BoxShape{{0.4, 0.4}}), {5, 5}, 1));
+  for (const double x : {2.0, 8.0}) {
+    JointDef rope;
+    rope.kind = JointKind::rope;
+    rope.a = {-1, {x, 5}};
+    rope.b = {body, {}};
+    rope.length = 1;
+    world.system.addJoint(rope);
+  }
+  double farthest = 0;
+  for (int step = 0; step < 300; ++step) {
+    world.steps(1);
+    farthest = std::max(farthest, length(world.at(body) - Vec2{5, 5}));
+  }
+  EXPECT_LT(farthest, 0.05);
+}
+
+}  // namespace
+}  // namespace smokebox
