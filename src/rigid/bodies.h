@@ -68,6 +68,7 @@ struct Bodies {
   std::vector<Motion> moved;     // since the step began
   std::vector<InverseMass> inverse;
   std::vector<Vec2> position;  // at the start of the step
+  std::vector<Vec2> wound;     // whole periods that have been taken off it at periodic sides, m
   std::vector<double> angleRad;
   std::vector<Turn> turn;  // of angleRad
   std::vector<char> there;
@@ -99,6 +100,8 @@ struct Bodies {
   int count() const { return static_cast<int>(def.size()); }
   bool moves(int body) const { return inverse[body].mass > 0; }
   Vec2 positionNow(int body) const { return position[body] + moved[body].linear(); }
+  /// As if it had never come in again at the other side: what ties bodies together goes by that.
+  Vec2 unwrappedNow(int body) const { return positionNow(body) + wound[body]; }
   double angleNow(int body) const { return angleRad[body] + moved[body].turn; }
   Frame frameNow(int body) const {
     return {positionNow(body), moved[body].turn == 0 ? turn[body] : turnedBy(turn[body], moved[body].turn)};

@@ -83,7 +83,7 @@ bool JointIsland::layOut(const std::vector<int>& joints, const std::vector<Joint
 void JointIsland::place(const Bodies& bodies, double h) {
   for (Place& p : places_) {
     const Motion& v = bodies.velocity[p.body];
-    const Vec2 position = bodies.positionNow(p.body);
+    const Vec2 position = bodies.unwrappedNow(p.body);
     const double angle = bodies.angleNow(p.body);
     p.frame.position = position + h * v.linear();
     p.angle = angle + h * v.turn;

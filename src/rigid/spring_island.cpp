@@ -30,7 +30,7 @@ InverseMass inverseOf(const Bodies& bodies, int body) {
 SpringEnd springEnd(const Anchor& anchor, const Spring& spring, const Bodies& bodies,
                     const StepClock& clock) {
   if (anchor.body >= 0) {
-    const Vec2 centre = bodies.positionNow(anchor.body);
+    const Vec2 centre = bodies.unwrappedNow(anchor.body);
     if (anchor.at == Vec2{}) return {centre, {}};
     const Vec2 arm = rotate(bodies.frameNow(anchor.body).turn, anchor.at);
     return {centre + arm, arm};

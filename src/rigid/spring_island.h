@@ -21,6 +21,7 @@ struct Spring {
   Vec2 between;          // to - from, at the start of the last sub-step
   bool carried = false;  // its end in the world is on its way
   Vec2 carriedFrom, carriedTo;
+  Vec2 shift;  // of its end in the world: periods that the other end had gone by when it was made, m
 };
 
 /// How far a step is, for ends that are carried.

@@ -10,9 +10,15 @@
 
 namespace smokebox {
 
-int SpringSet::add(const SpringDef& def, const Bodies&) {
+int SpringSet::add(const SpringDef& def, const Bodies& bodies) {
   Spring spring;
   spring.def = def;
+  for (Anchor* end : {&spring.def.from, &spring.def.to}) {
+    const int other = end == &spring.def.to ? def.from.body : def.to.body;
+    if (end->body >= 0 || other < 0) continue;
+    spring.shift = bodies.wound[other];
+    end->at = end->at + spring.shift;
+  }
   springs_.push_back(spring);
   fresh_ = true;
   firstAt_.clear();
@@ -57,7 +63,7 @@ void SpringSet::moveEnd(int spring, Vec2 to) {
   const Anchor& end = s.def.to.body < 0 ? s.def.to : s.def.from;
   s.carried = true;
   s.carriedFrom = end.at;
-  s.carriedTo = to;
+  s.carriedTo = to + s.shift;
   carrying_ = true;
 }
 

@@ -108,7 +108,7 @@ void SpringSheet::warmStart(Bodies& bodies, double h, double hBefore) {
   double *velocityX = velocity_.x(), *velocityY = velocity_.y();
   const double *impulseX = impulse_.x(), *impulseY = impulse_.y();
   for (std::size_t k = 0; k < body_.size(); ++k) {
-    const Vec2 now = bodies.positionNow(body_[k]);
+    const Vec2 now = bodies.unwrappedNow(body_[k]);
     Motion& v = bodies.velocity[body_[k]];
     movedX[k] = fresh_[k] ? hBefore * v.x : now.x - x[k];
     movedY[k] = fresh_[k] ? hBefore * v.y : now.y - y[k];

@@ -39,6 +39,7 @@ int RigidSystem::add(const BodyDef& def) {
   bodies.moved.push_back({});
   bodies.inverse.push_back({});
   bodies.position.push_back(def.position);
+  bodies.wound.push_back({});
   bodies.angleRad.push_back(def.angleRad);
   bodies.turn.push_back(turnBy(def.angleRad));
   bodies.there.push_back(1);
@@ -238,6 +239,18 @@ const JointDef& RigidSystem::joint(int joint) const { return state_->joints.def(
 
 Vec2 RigidSystem::anchorPoint(const Anchor& anchor) const {
   return anchor.body < 0 ? anchor.at : toWorld(state_->bodies.frameNow(anchor.body), anchor.at);
+}
+
+std::array<Vec2, 2> RigidSystem::endsOf(const Anchor& from, const Anchor& to) const {
+  const auto wound = [&](const Anchor& end) {
+    return end.body < 0 ? Vec2{} : state_->bodies.wound[end.body];
+  };
+  const Vec2 off = from.body < 0 ? wound(to) : wound(from);
+  return {anchorPoint(from) + wound(from) - off, anchorPoint(to) + wound(to) - off};
+}
+
+Vec2 RigidSystem::positionBeside(int body, int other) const {
+  return position(body) + state_->bodies.wound[body] - state_->bodies.wound[other];
 }
 
 const std::vector<Touch>& RigidSystem::touches() const {

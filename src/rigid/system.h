@@ -9,6 +9,7 @@
 //
 // All quantities are per metre of depth, SI units, angles in radians.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -128,6 +129,12 @@ class RigidSystem {
   bool jointIsThere(int joint) const;
   const JointDef& joint(int joint) const;
   Vec2 anchorPoint(const Anchor& anchor) const;
+  /// Of a spring or joint: the second end beyond a periodic side, if that is where it is from the first one;
+  /// a first one in the world likewise.
+  std::array<Vec2, 2> endsOf(const Anchor& from, const Anchor& to) const;
+  /// Where a body is from another that it is tied to: beyond a periodic side, if one of them has come in
+  /// again.
+  Vec2 positionBeside(int body, int other) const;
   const std::vector<Touch>& touches() const;
   RigidTotals totals() const;
   /// Bodies whose last part has left through an open side since the last call, each once.

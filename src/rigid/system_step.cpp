@@ -59,6 +59,7 @@ void RigidSystem::State::addWalls() {
     bodies.moved.push_back({});
     bodies.inverse.push_back({});
     bodies.position.push_back(def.position);
+    bodies.wound.push_back({});
     bodies.angleRad.push_back(0);
     bodies.turn.push_back({});
     bodies.there.push_back(walls.sides[side] == RigidWalls::Kind::closed);
@@ -476,9 +477,11 @@ void RigidSystem::State::endStep(double step) {
 
 void RigidSystem::State::wrap(int body) {
   if (bodies.surface[body].isDriven) return;
-  Vec2& x = bodies.position[body];
-  if (walls.sides[0] == RigidWalls::Kind::periodic) x.x -= walls.width * std::floor(x.x / walls.width);
-  if (walls.sides[2] == RigidWalls::Kind::periodic) x.y -= walls.height * std::floor(x.y / walls.height);
+  Vec2 &x = bodies.position[body], off;
+  if (walls.sides[0] == RigidWalls::Kind::periodic) off.x = walls.width * std::floor(x.x / walls.width);
+  if (walls.sides[2] == RigidWalls::Kind::periodic) off.y = walls.height * std::floor(x.y / walls.height);
+  x = x - off;
+  bodies.wound[body] = bodies.wound[body] + off;
 }
 
 bool RigidSystem::State::outside(int body) const {

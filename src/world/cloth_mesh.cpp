@@ -129,7 +129,7 @@ void ClothMesh::loosen(RigidSystem& system, double dt) {
   for (int j = 0; j + 1 < rows; ++j)
     for (int i = 0; i + 1 < columns; ++i) {
       const int k = node(i, j);
-      auto at = [&](int node) { return system.position(bodies_[node]); };
+      auto at = [&](int corner) { return system.positionBeside(bodies_[corner], bodies_[k]); };
       const double area = 0.5 * cross(at(k + columns + 1) - at(k), at(k + columns) - at(k + 1));
       float& slack = slack_[i + static_cast<std::size_t>(j) * (columns - 1)];
       slack = area < kTurned * flat ? 1 : std::max(0.0f, slack - static_cast<float>(dt / kRecovery));
@@ -164,7 +164,8 @@ void ClothMesh::capture(const RigidSystem& system, int index, ClothPicture& pict
   picture.color = spec_.color;
   picture.whole = whole_;
   picture.positions.resize(bodies_.size());
-  for (std::size_t k = 0; k < bodies_.size(); ++k) picture.positions[k] = system.position(bodies_[k]);
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    picture.positions[k] = system.positionBeside(bodies_[k], bodies_[bodies_.size() / 2]);
   picture.threads.clear();
   const int columns = picture.columns, rows = picture.rows;
   const auto whole = [&](int i, int j) {

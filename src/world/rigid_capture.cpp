@@ -100,15 +100,15 @@ void RigidStage::captureBodies(Snapshot& snapshot) const {
 /// By the spring's law: the system knows only what has pulled during a step, and nothing of springs between
 /// things that are held.
 double RigidStage::tensionNow(const SpringDef& spring) const {
-  const auto velocityAt = [&](const Anchor& anchor, Vec2 point) {
+  const auto velocityAt = [&](const Anchor& anchor) {
     if (anchor.body < 0) return Vec2{};
-    const Vec2 arm = point - system_.position(anchor.body);
+    const Vec2 arm = system_.anchorPoint(anchor) - system_.position(anchor.body);
     return system_.velocity(anchor.body) + system_.spin(anchor.body) * perpendicular(arm);
   };
-  const Vec2 from = system_.anchorPoint(spring.from), to = system_.anchorPoint(spring.to);
+  const auto [from, to] = system_.endsOf(spring.from, spring.to);
   const double distance = length(to - from);
   const Vec2 along = distance > 0 ? (1 / distance) * (to - from) : Vec2{};
-  const double rate = dot(velocityAt(spring.to, to) - velocityAt(spring.from, from), along);
+  const double rate = dot(velocityAt(spring.to) - velocityAt(spring.from), along);
   return spring.stiffness * (distance - spring.length) + spring.damping * rate;
 }
 
@@ -118,8 +118,8 @@ void RigidStage::captureLinks(Snapshot& snapshot) const {
     auto add = [&](int number, const std::optional<Color>& color, bool pull) {
       if (!system_.springIsThere(number)) return;
       const SpringDef& spring = system_.spring(number);
-      snapshot.springs.push_back({system_.anchorPoint(spring.from), system_.anchorPoint(spring.to),
-                                  tensionNow(spring), spring.length, color, pull});
+      const auto [from, to] = system_.endsOf(spring.from, spring.to);
+      snapshot.springs.push_back({from, to, tensionNow(spring), spring.length, color, pull});
     };
     for (std::size_t k = 0; k < springs_.size(); ++k) add(springs_[k], springColors_[k], false);
     for (const Pull& pull : pulls_) add(pull.spring, {}, true);
@@ -133,10 +133,10 @@ void RigidStage::captureLinks(Snapshot& snapshot) const {
                       : joint.kind == JointKind::weld  ? Kind::weld
                       : joint.kind == JointKind::slide ? Kind::slide
                                                        : Kind::rope;
+    const auto [from, to] = system_.endsOf(joint.a, joint.b);
     const double turn = joint.a.body < 0 ? 0 : system_.angleRad(joint.a.body);
-    snapshot.joints.push_back({kind, system_.anchorPoint(joint.a), system_.anchorPoint(joint.b),
-                               transformed(joint.axis, Pose{{}, turn}), joint.length, joint.lower,
-                               joint.upper, joint.motorLimit > 0 ? joint.motorSpeed : 0});
+    snapshot.joints.push_back({kind, from, to, transformed(joint.axis, Pose{{}, turn}), joint.length,
+                               joint.lower, joint.upper, joint.motorLimit > 0 ? joint.motorSpeed : 0});
   }
 }
 

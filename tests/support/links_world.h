@@ -26,6 +26,7 @@ struct LinksWorld {
     bodies.moved.push_back({});
     bodies.inverse.push_back({mass > 0 ? 1 / mass : 0, inertia > 0 ? 1 / inertia : 0});
     bodies.position.push_back(position);
+    bodies.wound.push_back({});
     bodies.angleRad.push_back(angle);
     bodies.turn.push_back(turnBy(angle));
     bodies.there.push_back(1);
