@@ -67,33 +67,37 @@ void sortLinks(int rows, std::vector<CutLink>& links, std::vector<CutLink>& sort
 
 }  // namespace
 
-void SolidsOnGrid::placeCopies(const std::vector<MovingSolid>& solids, const Boundary& boundary) {
+std::vector<Vec2> SolidsOnGrid::imagesOf(const MovingSolid& solid, const Boundary& boundary) {
   const Grid& grid = boundary.grid;
+  std::vector<Vec2> shifts;
+  Vec2 lo{1e300, 1e300}, hi{-1e300, -1e300};
+  for (const Outline& outline : solid.outlines)
+    for (Vec2 p : outline) {
+      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+    }
+  if (lo.x > hi.x) return shifts;
+  // Images that reach the domain, or a cell beyond it: links look that far.
+  auto images = [&](bool periodic, double from, double to, double size) {
+    Range range{std::ceil((-grid.h - to) / size), std::floor((size + grid.h - from) / size)};
+    if (!periodic) return Range{std::max(range.first, 0.0), std::min(range.last, 0.0)};
+    if (range.last - range.first < kMostCopies) return range;
+    const double middle = std::floor(0.5 * (range.first + range.last));
+    return Range{middle - kMostCopies / 2, middle + kMostCopies / 2};
+  };
+  // None for a solid far away, however far: then no rounding of its outline can do harm.
+  const Range alongX = images(boundary.periodicX(), lo.x, hi.x, grid.width()),
+              alongY = images(boundary.periodicY(), lo.y, hi.y, grid.height());
+  for (int y = 0; alongY.first + y <= alongY.last && y <= kMostCopies; ++y)
+    for (int x = 0; alongX.first + x <= alongX.last && x <= kMostCopies; ++x)
+      shifts.push_back({(alongX.first + x) * grid.width(), (alongY.first + y) * grid.height()});
+  return shifts;
+}
+
+void SolidsOnGrid::placeCopies(const std::vector<MovingSolid>& solids, const Boundary& boundary) {
   copies_.clear();
-  for (std::size_t k = 0; k < solids.size(); ++k) {
-    Vec2 lo{1e300, 1e300}, hi{-1e300, -1e300};
-    for (const Outline& outline : solids[k].outlines)
-      for (Vec2 p : outline) {
-        lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
-        hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
-      }
-    if (lo.x > hi.x) continue;
-    // Images that reach the domain, or a cell beyond it: links look that far.
-    auto images = [&](bool periodic, double from, double to, double size) {
-      Range range{std::ceil((-grid.h - to) / size), std::floor((size + grid.h - from) / size)};
-      if (!periodic) return Range{std::max(range.first, 0.0), std::min(range.last, 0.0)};
-      if (range.last - range.first < kMostCopies) return range;
-      const double middle = std::floor(0.5 * (range.first + range.last));
-      return Range{middle - kMostCopies / 2, middle + kMostCopies / 2};
-    };
-    // None for a solid far away, however far: then no rounding of its outline can do harm.
-    const Range alongX = images(boundary.periodicX(), lo.x, hi.x, grid.width()),
-                alongY = images(boundary.periodicY(), lo.y, hi.y, grid.height());
-    for (int y = 0; alongY.first + y <= alongY.last && y <= kMostCopies; ++y)
-      for (int x = 0; alongX.first + x <= alongX.last && x <= kMostCopies; ++x)
-        copies_.push_back(
-            {static_cast<int>(k), {(alongX.first + x) * grid.width(), (alongY.first + y) * grid.height()}});
-  }
+  for (std::size_t k = 0; k < solids.size(); ++k)
+    for (const Vec2 shift : imagesOf(solids[k], boundary)) copies_.push_back({static_cast<int>(k), shift});
   outlines_.resize(copies_.size());
   for (std::size_t c = 0; c < copies_.size(); ++c) {
     outlines_[c].outlines = solids[copies_[c].solid].outlines;

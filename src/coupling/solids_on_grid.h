@@ -63,6 +63,9 @@ class SolidsOnGrid {
     Vec2 shift;  // where the image lies from the solid itself
   };
   const std::vector<Copy>& copies() const { return copies_; }
+  /// Shifts of the images of a solid that reach the domain, 0 for itself: more than one beside periodic
+  /// sides.
+  static std::vector<Vec2> imagesOf(const MovingSolid& solid, const Boundary& boundary);
 
  private:
   void placeCopies(const std::vector<MovingSolid>& solids, const Boundary& boundary);

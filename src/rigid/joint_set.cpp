@@ -32,6 +32,12 @@ void JointSet::removeAt(int body) {
     if (joints_[k].there && (joints_[k].def.a.body == body || joints_[k].def.b.body == body)) remove(k);
 }
 
+bool JointSet::ties(int body) const {
+  return std::any_of(joints_.begin(), joints_.end(), [&](const Joint& joint) {
+    return joint.there && (joint.def.a.body == body || joint.def.b.body == body);
+  });
+}
+
 void JointSet::setMotor(int joint, double speed, double limit) {
   joints_[joint].def.motorSpeed = speed;
   joints_[joint].def.motorLimit = limit;

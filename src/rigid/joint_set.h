@@ -12,6 +12,8 @@ class JointSet {
   int add(const JointDef& def, const Bodies& bodies);
   void remove(int joint);
   void removeAt(int body);
+  /// Is there a joint at the body?
+  bool ties(int body) const;
   int count() const { return static_cast<int>(joints_.size()); }
   bool isThere(int joint) const { return joints_[joint].there; }
   const JointDef& def(int joint) const { return joints_[joint].def; }

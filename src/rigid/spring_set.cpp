@@ -58,6 +58,14 @@ void SpringSet::removeAt(int body) {
   for (int at = firstAt_[body]; at < firstAt_[body + 1]; ++at) remove(springsAt_[at]);
 }
 
+bool SpringSet::ties(int body) {
+  if (there_ == 0) return false;
+  if (firstAt_.empty()) listByBody();
+  if (body + 2 > static_cast<int>(firstAt_.size())) return false;
+  return std::any_of(springsAt_.begin() + firstAt_[body], springsAt_.begin() + firstAt_[body + 1],
+                     [&](int spring) { return springs_[spring].there; });
+}
+
 void SpringSet::moveEnd(int spring, Vec2 to) {
   Spring& s = springs_[spring];
   const Anchor& end = s.def.to.body < 0 ? s.def.to : s.def.from;

@@ -13,6 +13,8 @@ class SpringSet {
   int add(const SpringDef& def, const Bodies& bodies);
   void remove(int spring);
   void removeAt(int body);
+  /// Is there a spring at the body?
+  bool ties(int body);
   int count() const { return static_cast<int>(springs_.size()); }
   bool isThere(int spring) const { return springs_[spring].there; }
   const SpringDef& def(int spring) const { return springs_[spring].def; }

@@ -68,7 +68,7 @@ struct RigidSystem::State {
   void collectTouch(const Contact& contact);
   void sortTouches();
   void wrap(int body);
-  bool outside(int body) const;
+  bool leaves(int body);
 
   RigidWalls walls;
   Vec2 edge;  // of the domain: who is nearer to a side than so much is not inside, m

@@ -20,6 +20,8 @@ constexpr double kSqueezed = 0.01;
 constexpr double kUnsettled = 0.2;
 // What changes a velocity by more than gravity does in so many sub-steps may be a blow.
 constexpr double kForce = 4;
+// What is so many domains beyond an open side does not come back within a film.
+constexpr double kLost = 1000;
 }  // namespace
 
 RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod& how, ThreadPool& threads)
@@ -467,7 +469,7 @@ void RigidSystem::State::endStep(double step) {
     if (!std::isfinite(bodies.position[b].x + bodies.position[b].y + bodies.angleRad[b] + v.x + v.y + v.turn))
       throw SimulationError("the motion of body " + std::to_string(b) + " is not a finite number");
     wrap(b);
-    if (!departed[b] && outside(b)) {
+    if (!departed[b] && leaves(b)) {
       departed[b] = 1;
       gone.push_back(b);
     }
@@ -484,12 +486,21 @@ void RigidSystem::State::wrap(int body) {
   bodies.wound[body] = bodies.wound[body] + off;
 }
 
-bool RigidSystem::State::outside(int body) const {
-  const Vec2 x = bodies.position[body];
+// Beyond an open side, and nothing there is brings it back: neither its way, nor gravity, nor what it is tied
+// to, unless that has let it go by a whole domain.
+bool RigidSystem::State::leaves(int body) {
+  const Vec2 x = bodies.position[body], size{walls.width, walls.height};
   const double r = bodies.extent[body].reach;
-  const auto open = RigidWalls::Kind::open;
-  return (walls.sides[0] == open && x.x < -r) || (walls.sides[1] == open && x.x > walls.width + r) ||
-         (walls.sides[2] == open && x.y < -r) || (walls.sides[3] == open && x.y > walls.height + r);
+  const Motion& v = bodies.velocity[body];
+  const Vec2 pull = bodies.moves(body) ? bodies.surface[body].gravityScale * gravity : Vec2{};
+  const auto goes = [&](int side, double beyond, double speed, double outward, double across) {
+    if (walls.sides[side] != RigidWalls::Kind::open || beyond <= r) return false;
+    if (beyond > kLost * across) return true;
+    if (speed < 0 || outward < 0) return false;
+    return beyond > across || !(springs.ties(body) || joints.ties(body));
+  };
+  return goes(0, -x.x, -v.x, -pull.x, size.x) || goes(1, x.x - size.x, v.x, pull.x, size.x) ||
+         goes(2, -x.y, -v.y, -pull.y, size.y) || goes(3, x.y - size.y, v.y, pull.y, size.y);
 }
 
 }  // namespace smokebox

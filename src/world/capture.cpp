@@ -86,14 +86,16 @@ void World::capture(Snapshot& snapshot) const {
       snapshot.solids.push_back(
           {solids_.spec(k).name, k, solids_.moving()[k].outlines, solids_.pose(k), solids_.spec(k).color});
   // What sticks out of a periodic side comes in again on the other.
-  for (const SolidsOnGrid::Copy& copy : onGrid_.copies()) {
-    const int k = copy.solid;
-    if (copy.shift == Vec2{} || k >= solids_.count() || !solids_.shown(k)) continue;
-    std::vector<Outline> outlines = solids_.moving()[k].outlines;
-    for (Outline& outline : outlines)
-      for (Vec2& point : outline) point = point + copy.shift;
-    snapshot.solids.push_back(
-        {solids_.spec(k).name, k, std::move(outlines), solids_.pose(k), solids_.spec(k).color});
+  for (int k = 0; k < solids_.count(); ++k) {
+    if (!solids_.shown(k)) continue;
+    for (const Vec2 shift : SolidsOnGrid::imagesOf(solids_.moving()[k], boundary_)) {
+      if (shift == Vec2{}) continue;
+      std::vector<Outline> outlines = solids_.moving()[k].outlines;
+      for (Outline& outline : outlines)
+        for (Vec2& point : outline) point = point + shift;
+      snapshot.solids.push_back(
+          {solids_.spec(k).name, k, std::move(outlines), solids_.pose(k), solids_.spec(k).color});
+    }
   }
   if (rigid_) rigid_->capture(time(), snapshot);
   const std::string& follow = spec_.view.camera.follow;

@@ -54,7 +54,17 @@ void RigidStage::capture(double time, Snapshot& snapshot) const {
   if (snapshot.shows(LayerKind::cloth))
     for (std::size_t k = 0; k < cloths_.size(); ++k) {
       if (!cloths_[k].shown || !cloths_[k].isThere(system_)) continue;
-      cloths_[k].capture(system_, static_cast<int>(k), snapshot.cloths.emplace_back());
+      ClothPicture sheet;
+      cloths_[k].capture(system_, static_cast<int>(k), sheet);
+      Vec2 low = sheet.positions[0], high = low;
+      for (const Vec2 p : sheet.positions) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      }
+      for (const Vec2 shift : imagesOf(low, high)) {
+        ClothPicture& image = snapshot.cloths.emplace_back(sheet);
+        for (Vec2& p : image.positions) p = p + shift;
+      }
     }
   if (snapshot.shows(LayerKind::collisions)) captureTouches(time, snapshot);
   if (snapshot.shows(LayerKind::trails)) captureTrails(snapshot);
@@ -72,6 +82,10 @@ std::vector<Vec2> RigidStage::imagesOf(Vec2 low, Vec2 high) const {
     if (high.y > walls_.height) shifts.push_back(shifts[k] - Vec2{0, walls_.height});
   }
   return shifts;
+}
+
+std::vector<Vec2> RigidStage::imagesBetween(Vec2 p, Vec2 q) const {
+  return imagesOf({std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)});
 }
 
 void RigidStage::captureBodies(Snapshot& snapshot) const {
@@ -119,7 +133,9 @@ void RigidStage::captureLinks(Snapshot& snapshot) const {
       if (!system_.springIsThere(number)) return;
       const SpringDef& spring = system_.spring(number);
       const auto [from, to] = system_.endsOf(spring.from, spring.to);
-      snapshot.springs.push_back({from, to, tensionNow(spring), spring.length, color, pull});
+      for (const Vec2 shift : imagesBetween(from, to))
+        snapshot.springs.push_back(
+            {from + shift, to + shift, tensionNow(spring), spring.length, color, pull});
     };
     for (std::size_t k = 0; k < springs_.size(); ++k) add(springs_[k], springColors_[k], false);
     for (const Pull& pull : pulls_) add(pull.spring, {}, true);
@@ -135,8 +151,10 @@ void RigidStage::captureLinks(Snapshot& snapshot) const {
                                                        : Kind::rope;
     const auto [from, to] = system_.endsOf(joint.a, joint.b);
     const double turn = joint.a.body < 0 ? 0 : system_.angleRad(joint.a.body);
-    snapshot.joints.push_back({kind, from, to, transformed(joint.axis, Pose{{}, turn}), joint.length,
-                               joint.lower, joint.upper, joint.motorLimit > 0 ? joint.motorSpeed : 0});
+    for (const Vec2 shift : imagesBetween(from, to))
+      snapshot.joints.push_back({kind, from + shift, to + shift, transformed(joint.axis, Pose{{}, turn}),
+                                 joint.length, joint.lower, joint.upper,
+                                 joint.motorLimit > 0 ? joint.motorSpeed : 0});
   }
 }
 

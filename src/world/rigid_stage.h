@@ -109,6 +109,7 @@ class RigidStage {
 
   /// Where a thing of this box is seen: once, and where it sticks out of periodic sides once more.
   std::vector<Vec2> imagesOf(Vec2 low, Vec2 high) const;
+  std::vector<Vec2> imagesBetween(Vec2 p, Vec2 q) const;
   void captureBodies(Snapshot& snapshot) const;
   void captureLinks(Snapshot& snapshot) const;
   double tensionNow(const SpringDef& spring) const;

@@ -26,6 +26,7 @@ World::World(const SceneDocument& document, const Options& options)
       needs_(needsOf(spec_)),
       probes_(spec_.probes, kOutlineTolerance * spec_.domain.grid.h) {
   boundary_.grid = spec_.domain.grid;
+  for (int s = 0; s < 4; ++s) boundary_.sides[s].kind = spec_.domain.walls[s].kind;
   if (needs_.rigid) {
     rigid_ = std::make_unique<RigidStage>(spec_, solids_, kOutlineTolerance * spec_.domain.grid.h,
                                           needs_.fluid, pool_);
@@ -83,9 +84,6 @@ void World::step() {
 
 void World::buildFluid() {
   const Grid& grid = boundary_.grid;
-  for (int s = 0; s < 4; ++s) {
-    boundary_.sides[s].kind = spec_.domain.walls[s].kind;
-  }
   setWalls(0);
   onGrid_.cover(covered(), true, boundary_);
   fluid_.emplace(boundary_, needs_.parts, pool_);

@@ -10,6 +10,7 @@ namespace {
 
 using test::bodyAt;
 using test::bodyShape;
+using test::closedBox;
 using test::RigidWorld;
 using test::solidAt;
 using test::solidShape;
@@ -120,7 +121,7 @@ TEST(RigidTied, ABallThatHitsAPinnedRodLeavesAsTheirMomentsSay) {
 
 TEST(RigidTied, WeldedBodiesBounceAsOneWould) {
   // Truth: bounce 1 and no friction keep the energy, through a tilted weld and through a chain of pins.
-  RigidWorld world(test::closedBox(10, 10), {0, -10});
+  RigidWorld world(closedBox(10, 10), {0, -10});
   const auto disk = bodyShape(CircleShape{0.5});
   const int a = world.add(bouncing(bodyAt(disk, {4.6, 3}, 1))),
             b = world.add(bouncing(bodyAt(disk, {5.4, 3.9}, 1)));
@@ -137,7 +138,7 @@ TEST(RigidTied, WeldedBodiesBounceAsOneWould) {
 
 TEST(RigidTied, AChainOfPinsBouncesOnAPost) {
   // Truth: as above; a chain of twelve that folds over a post loses and gains little.
-  RigidWorld world(test::closedBox(10, 10), {0, -10});
+  RigidWorld world(closedBox(10, 10), {0, -10});
   std::vector<int> links;
   for (int k = 0; k < 12; ++k)
     links.push_back(world.add(bouncing(bodyAt(bodyShape(CapsuleShape{0.4, 0.05}), {2.25 + 0.5 * k, 5}))));
@@ -158,7 +159,7 @@ TEST(RigidTied, AChainOfPinsBouncesOnAPost) {
 TEST(RigidTied, AChainDrawnStraightFlingsNothing) {
   // Truth: what falls on a chain between two nails that has no slack brings all the energy there is.
   for (const int steps : {30, 60, 120, 240}) {
-    RigidWorld world(test::closedBox(10, 10), {0, -10});
+    RigidWorld world(closedBox(10, 10), {0, -10});
     std::vector<int> links;
     for (int k = 0; k < 12; ++k) {
       BodyDef def = bodyAt(bodyShape(BoxShape{{0.5, 0.1}}), {2.25 + 0.5 * k, 5});
@@ -181,7 +182,7 @@ TEST(RigidTied, AChainDrawnStraightFlingsNothing) {
 
 TEST(RigidTied, RopesThatPullAgainstEachOtherHoldStill) {
   // Truth: two ropes of 1 m to nails 3 m away on either side leave it where it is.
-  RigidWorld world(test::closedBox(10, 10), {0, -10});
+  RigidWorld world(closedBox(10, 10), {0, -10});
   const int body = world.add(bodyAt(bodyShape(BoxShape{{0.4, 0.4}}), {5, 5}, 1));
   for (const double x : {2.0, 8.0}) {
     JointDef rope;
@@ -197,6 +198,90 @@ TEST(RigidTied, RopesThatPullAgainstEachOtherHoldStill) {
     farthest = std::max(farthest, length(world.at(body) - Vec2{5, 5}));
   }
   EXPECT_LT(farthest, 0.05);
+}
+
+TEST(RigidTied, PeriodicSidesDoNotTearWhatHangsTogether) {
+  // Truth: two that drift at 1 m/s go on at 1 m/s, whichever of them has come in again at the other side.
+  for (const int kind : {0, 1, 2}) {
+    RigidWalls walls = closedBox(10, 10);
+    walls.sides[0] = walls.sides[1] = RigidWalls::Kind::periodic;
+    RigidWorld world(walls);
+    int pair[2];
+    for (int k = 0; k < 2; ++k) {
+      BodyDef def = bodyAt(bodyShape(CircleShape{0.2}), {8.0 + k, 5}, 1);
+      def.velocity = {1, 0};
+      pair[k] = world.add(def);
+    }
+    if (kind == 0) {
+      SpringDef spring;
+      spring.from.body = pair[0], spring.to.body = pair[1];
+      spring.length = 1, spring.stiffness = 100;
+      world.system.addSpring(spring);
+    } else if (kind == 1) {
+      weld(world, pair[0], {0.5, 0}, pair[1], {-0.5, 0});
+    } else {
+      JointDef rope;
+      rope.kind = JointKind::rope;
+      rope.a.body = pair[0], rope.b.body = pair[1];
+      rope.length = 1;
+      world.system.addJoint(rope);
+    }
+    world.seconds(13);
+    for (const int body : pair) EXPECT_NEAR(world.velocity(body).x, 1, 1e-9) << kind;
+    EXPECT_NEAR(world.at(pair[0]).x, 1, 1e-9) << kind;
+    EXPECT_NEAR(energyOf(world), 1, 1e-9) << kind;
+  }
+}
+
+TEST(RigidTied, APullGoesToTheImageThatItIsGiven) {
+  // Truth: a body that has gone round once is drawn to a point that is 1 m from it, not 9 m or 11 m.
+  RigidWalls walls = closedBox(10, 10);
+  walls.sides[0] = walls.sides[1] = RigidWalls::Kind::periodic;
+  RigidWorld world(walls);
+  BodyDef def = bodyAt(bodyShape(CircleShape{0.2}), {8, 5}, 1);
+  def.velocity = {4, 0};
+  const int body = world.add(def);
+  world.seconds(1);
+  ASSERT_NEAR(world.at(body).x, 2, 1e-9);
+  world.system.setVelocity(body, {});
+  SpringDef pull;
+  pull.from.body = body;
+  pull.to.at = {3, 5};
+  pull.stiffness = 10, pull.damping = 6;
+  const int spring = world.system.addSpring(pull);
+  world.system.moveSpringEnd(spring, {3, 5});
+  EXPECT_NEAR(world.system.springTension(spring), 0, 1e-9);
+  world.seconds(5);
+  EXPECT_NEAR(world.at(body).x, 3, 1e-3);
+}
+
+TEST(RigidTied, WhatComesBackHasNotLeft) {
+  // Truth: thrown up at 20 m/s through an open top, under 10 m/s^2, it is back after 4 s; what hangs on a
+  // rope swings back in; what flies off sideways has left.
+  RigidWorld world(test::wallsOf(RigidWalls::Kind::open, 10, 10), {0, -10});
+  BodyDef def = bodyAt(bodyShape(CircleShape{0.1}), {5, 5});
+  def.velocity = {0, 20};
+  const int thrown = world.add(def);
+  const int hung = world.add(bodyAt(bodyShape(CircleShape{0.1}), {9.5, 3}));
+  world.system.setVelocity(hung, {4, 0});
+  JointDef rope;
+  rope.kind = JointKind::rope;
+  rope.a.at = {9.5, 5};
+  rope.b.body = hung;
+  rope.length = 2;
+  world.system.addJoint(rope);
+  def.position = {8, 8}, def.velocity = {20, 0};
+  const int lost = world.add(def);
+  std::vector<int> gone;
+  double farthest = 0;
+  for (int step = 0; step < 240; ++step) {
+    world.steps(1);
+    for (const int body : world.system.takeDeparted()) gone.push_back(body);
+    farthest = std::max(farthest, world.at(hung).x);
+  }
+  EXPECT_EQ(gone, std::vector<int>{lost});
+  EXPECT_GT(farthest, 10.5);
+  EXPECT_NEAR(world.at(thrown).y, 5, 1e-6);
 }
 
 }  // namespace
