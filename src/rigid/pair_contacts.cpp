@@ -1,6 +1,7 @@
 #include "rigid/pair_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rigid/collide.h"
@@ -14,6 +15,13 @@ namespace {
 // Pieces that are nearer than this share of the thinner one's width touch, whatever their speed says: others
 // may press on them within the sub-step.
 constexpr double kTouching = 0.01;
+// What would be struck by less than this share of the thinner one's width across the way slides over it, if
+// it turns by less than that within so many sub-steps: the seam of two solids that lie flush is no step.
+constexpr double kFlush = 1e-3;
+constexpr double kFlushSubSteps = 16;
+// Sine of the angle between normals that are one; of that between a face and a way along it, which may have a
+// sub-step's fall in it.
+constexpr double kAlong = 1e-3, kAlongFalling = 0.02;
 
 /// Distance of the point from the box around a body's pieces.
 double distanceFrom(const Extent& box, const Frame& frame, Vec2 point) {
@@ -83,6 +91,42 @@ double smallestGap(const Manifold& manifold) {
 }
 }  // namespace
 
+namespace {
+/// How far a piece reaches along a direction: least and most.
+std::array<double, 2> spanOf(const ConvexPiece& piece, const Frame& frame, Vec2 along) {
+  std::array<double, 2> span{1e300, -1e300};
+  for (const Vec2 p : piece.points) {
+    const double at = dot(toWorld(frame, p), along);
+    span = {std::min(span[0], at), std::max(span[1], at)};
+  }
+  return {span[0] - piece.radius, span[1] + piece.radius};
+}
+
+/// Does b, at this velocity against a, only graze it with what comes first along its way?
+bool grazes(const ConvexPiece& pa, const Frame& fa, const ConvexPiece& pb, const Frame& fb, Vec2 velocity,
+            Vec2 normal, double flush) {
+  const double speed = length(velocity);
+  if (!(speed > 0)) return false;
+  const Vec2 way = (1 / speed) * velocity;
+  Vec2 across = perpendicular(way);
+  double least = kAlongFalling;
+  const auto follow = [&](const ConvexPiece& piece, const Frame& frame) {
+    for (const Vec2 own : piece.normals) {
+      const Vec2 out = rotate(frame.turn, own);
+      const double off = std::abs(dot(out, way));
+      if (off >= least) continue;
+      least = off;
+      across = out;
+    }
+  };
+  follow(pa, fa);
+  follow(pb, fb);
+  if (std::abs(cross(normal, across)) <= kAlong) return false;  // it lies on that
+  const auto a = spanOf(pa, fa, across), b = spanOf(pb, fb, across);
+  return std::min(a[1] - b[0], b[1] - a[0]) <= flush;
+}
+}  // namespace
+
 double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, double margin, double h,
                           bool swept, std::vector<Contact>& found, const Later& later) {
   auto ahead = [&](int body, const Motion& struck) -> Motion {
@@ -99,6 +143,12 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
   const double rest = h - later.time, thin = thinner(bodies, key.a, key.b);
   double clear = 1e300;
   Manifold manifold;
+  const Motion &motionA = bodies.velocity[key.a], &motionB = bodies.velocity[key.b];
+  const Vec2 velocity = motionB.linear() - motionA.linear();
+  const double turning = std::abs(motionA.turn) * bodies.extent[key.a].turningReach() +
+                         std::abs(motionB.turn) * bodies.extent[key.b].turningReach();
+  const bool mayGraze = bodies.moves(key.a) != bodies.moves(key.b) && length(velocity) * h > 1e-6 * thin &&
+                        turning * kFlushSubSteps * h <= kFlush * thin;
   auto meet = [&](const ConvexPiece& pa, const ConvexPiece& pb, PiecePair pieces) {
     const Vec2 apart = toWorld(fb, pb.centre) - toWorld(fa, pa.centre);
     const double near = pa.reach + pb.reach + margin;
@@ -141,6 +191,7 @@ double PairContacts::find(const Bodies& bodies, const PairKey& key, Vec2 shift, 
       return;
     }
     clear = 0;
+    if (mayGraze && grazes(pa, ta, pb, tb, velocity, manifold.normal, kFlush * thin)) return;
     Contact& contact = found.emplace_back();
     contact.a = key.a;
     contact.b = key.b;

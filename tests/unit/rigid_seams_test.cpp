@@ -187,8 +187,8 @@ TEST(RigidSeams, WhatSlidesDownOutsideAThinCupMeetsItsSideOnly) {
 }
 
 TEST(RigidSeams, WhatALongPlateHasSwallowedIsPushedOutOfItsNearestFace) {
-  // The way out is at most half the plate's height and the star's reach; a piece of it may ask for twice that,
-  // but never for the way to the plate's end.
+  // The way out is at most half the plate's height and the star's reach; a piece of it may ask for twice
+  // that, but never for the way to the plate's end.
   const double height = 1, reach = 0.4;
   const BodyShape plate = makeSolidShape({BoxShape{{24, height}}, {}}, 1e-3);
   Dice dice(5);
@@ -331,6 +331,42 @@ TEST(RigidSeams, APegInAHoleTouchesItsRim) {
       }
     }
   }
+}
+
+/// Tiles of 1 m side by side, of which every second one is higher by `step`.
+void layTiles(RigidWorld& world, double step) {
+  for (int k = 0; k < 30; ++k)
+    world.add(solidAt(solidShape(BoxShape{{1, 1}}), {0.5 + k, 0.5 + (k % 2 == 1 ? step : 0.0)}));
+}
+
+TEST(RigidSeams, SolidsThatLieFlushHaveNoSteps) {
+  // Truth: without friction it slides on as fast as it came, at its height, not turned; at any step.
+  for (const bool isBox : {true, false})
+    for (const double speed : {0.5, 1.0, 4.0, 10.0})
+      for (const int steps : {30, 60, 240}) {
+        RigidWorld world(closedBox(30, 10), {0, -10});
+        layTiles(world, 0);
+        BodyDef def =
+            bodyAt(bodyShape(isBox ? Shape(BoxShape{{0.5, 0.5}}) : Shape(CircleShape{0.25})), {2, 1.25});
+        def.velocity = {speed, 0};
+        const int body = world.add(def);
+        for (int k = 0; k < 2 * steps; ++k) world.system.step(1.0 / steps);
+        EXPECT_NEAR(world.at(body).x, 2 + 2 * speed, 1e-6) << isBox << " " << speed << " " << steps;
+        EXPECT_NEAR(world.at(body).y, 1.25, 1e-5) << isBox << " " << speed << " " << steps;
+        EXPECT_NEAR(world.system.angleRad(body), 0, 1e-6) << isBox << " " << speed << " " << steps;
+      }
+}
+
+TEST(RigidSeams, ALowStepIsAStep) {
+  // Truth: a box of 0.5 m at 1 m/s does not get over a step of 1 cm: the hit below its centre takes its
+  // speed.
+  RigidWorld world(closedBox(30, 10), {0, -10});
+  layTiles(world, 0.01);
+  BodyDef def = bodyAt(bodyShape(BoxShape{{0.5, 0.5}}), {2.5, 1.25});
+  def.velocity = {1, 0};
+  const int body = world.add(def);
+  world.seconds(3);
+  EXPECT_LT(world.at(body).x, 2.8);
 }
 
 }  // namespace
