@@ -17,6 +17,10 @@ LinearColor linear(const Color& color, double alpha) {
   return {toLinear(color.r) * a, toLinear(color.g) * a, toLinear(color.b) * a, a};
 }
 
+double luminance(const Color& color) {
+  return 0.2126 * toLinear(color.r) + 0.7152 * toLinear(color.g) + 0.0722 * toLinear(color.b);
+}
+
 Color mixed(const Color& a, const Color& b, double share) {
   const float s = static_cast<float>(share);
   return {a.r + s * (b.r - a.r), a.g + s * (b.g - a.g), a.b + s * (b.b - a.b)};

@@ -17,6 +17,8 @@ using LinearColor = std::array<float, 4>;
 /// From sRGB, premultiplied with `alpha`.
 LinearColor linear(const Color& color, double alpha = 1);
 /// Of two sRGB colours, mixed as they are encoded: share 0 is a, 1 is b.
+/// Relative luminance, Rec. 709, of a colour as it is encoded: 0 to 1.
+double luminance(const Color& color);
 Color mixed(const Color& a, const Color& b, double share);
 
 class SpriteBatch {

@@ -8,19 +8,18 @@
 namespace smokebox {
 
 namespace {
-constexpr double kOutlineUnits = 1.8;        // width of the outline, in 1/720 of the picture's height
-constexpr double kThinnestUnits = 1.6;       // thinner bodies are widened to this
-constexpr double kOutlineShare = 0.14;       // of a small body's radius: its outline does not swallow it
-constexpr double kMarkFromPixels = 5;        // smaller bodies have no mark
-constexpr double kDark = 0.5, kLight = 0.5;  // shares of black in outlines on dark and light ground
+constexpr double kOutlineUnits = 1.8;   // width of the outline, in 1/720 of the picture's height
+constexpr double kThinnestUnits = 1.6;  // thinner bodies are widened to this
+constexpr double kOutlineShare = 0.14;  // of a small body's radius: its outline does not swallow it
+constexpr double kMarkFromPixels = 5;   // smaller bodies have no mark
 
 struct BodyColors {
   Color fill, outline;
 };
 
-BodyColors colorsOf(const BodyPicture& body, const LayerSpec& layer, bool darkGround) {
+BodyColors colorsOf(const BodyPicture& body, const LayerSpec& layer) {
   const Color fill = body.color ? *body.color : layer.color.value_or(bodyColor(body.index));
-  return {fill, mixed(fill, {0, 0, 0}, darkGround ? kDark : kLight)};
+  return {fill, outlineColor(fill)};
 }
 
 Vec2 inOwn(Vec2 point, const Pose& pose) { return transformed(point - pose.position, {{}, -pose.angleRad}); }
@@ -46,7 +45,7 @@ void BodiesLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, const P
 
 /// Its mark is a spoke.
 void BodiesLayer::drawDisk(const BodyPicture& body, const LayerSpec& layer, const PictureFrame& frame) {
-  const BodyColors colors = colorsOf(body, layer, frame.darkGround);
+  const BodyColors colors = colorsOf(body, layer);
   const LinearColor outline = linear(colors.outline, layer.opacity);
   const Vec2 centre = frame.toPixels(body.pose.position);
   const double radius = std::max(body.radius * frame.scale, 0.5 * kThinnestUnits * frame.unit);
@@ -66,7 +65,7 @@ void BodiesLayer::drawOutlines(const BodyPicture& body, std::size_t place, const
     for (const Vec2& point : body.outlines[m]) pixels_[m].push_back(frame.toPixels(point));
   }
   if (pixels_.empty() || pixels_[0].empty()) return;
-  const BodyColors colors = colorsOf(body, layer, frame.darkGround);
+  const BodyColors colors = colorsOf(body, layer);
   const Vec2 centre = frame.toPixels(body.pose.position), corner = pixels_[0][0];
   const double radius = length(corner - centre);
   const double stroke = strokeFor(radius, frame);

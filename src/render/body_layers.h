@@ -9,7 +9,8 @@
 
 namespace smokebox {
 
-/// Filled shapes with a darker outline, and a spoke that turns with them. Masks are kept until a shape moves.
+/// Filled shapes with a darker outline (a lighter one on what is nearly black), and a spoke that turns with
+/// them. Masks are kept until a shape moves.
 class BodiesLayer {
  public:
   explicit BodiesLayer(Palette& palette);

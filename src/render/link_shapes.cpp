@@ -23,9 +23,17 @@ constexpr double kFewestCoils = 4, kMostCoils = 16;
 constexpr double kSmallestUnits = 26;  // at rest; shorter springs are straight lines
 constexpr double kStraightShare = 0.12;
 constexpr int kRopePieces = 28;
+// Contrast of two colours as in the Web Content Accessibility Guidelines 2.1; lines below this one are lost.
+constexpr double kGlare = 0.05, kLeastContrast = 1.35;
 }  // namespace
 
 Color bodyColor(int index) { return kBodyColors[static_cast<std::size_t>(index) % std::size(kBodyColors)]; }
+
+Color outlineColor(const Color& fill, double share) {
+  const Color darker = mixed(fill, {0, 0, 0}, share);
+  const bool isSeen = luminance(fill) + kGlare > kLeastContrast * (luminance(darker) + kGlare);
+  return isSeen ? darker : mixed(fill, {1, 1, 1}, share);
+}
 
 Color tensionColor(double tension, double usual, const Color& neutral) {
   const double share = std::abs(tension) / (std::abs(tension) + 0.5 * usual);

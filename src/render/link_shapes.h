@@ -10,6 +10,8 @@ namespace smokebox {
 
 /// The colour of the k-th body (particle, cloth) that names none.
 Color bodyColor(int index);
+/// Of a body's outline and mark: its fill with a share of black, or of white where black would not be seen.
+Color outlineColor(const Color& fill, double share = 0.5);
 
 /// Of a spring by its tension, N (negative: it is pressed): blue, then `neutral` at rest, then red, as far
 /// for a pull as for the same pressure. Two thirds of the way at `usual`, and never quite at its end.

@@ -16,7 +16,7 @@ void ParticlesLayer::draw(const Snapshot& snapshot, const LayerSpec& layer, cons
     const double radius = std::max(particle.radius * frame.scale, kSmallestUnits * frame.unit);
     palette_.sprites.addDisk(frame.toPixels(particle.position), radius, linear(fill, layer.opacity),
                              radius < kOutlineFrom ? 0 : std::min(frame.line(1.4), 0.2 * radius),
-                             linear(mixed(fill, {0, 0, 0}, 0.45), layer.opacity));
+                             linear(outlineColor(fill, 0.45), layer.opacity));
   }
   palette_.sprites.flush();
 }

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "render/batches.h"
+
 namespace smokebox {
 
 namespace {
-/// Rec. 709 luminance of the linear colour, roughly enough to tell a dark ground from a light one.
-bool isDark(const Color& c) { return 0.2126 * c.r * c.r + 0.7152 * c.g * c.g + 0.0722 * c.b * c.b < 0.18; }
+constexpr double kDarkGround = 0.18;  // luminance below it
 }  // namespace
 
 PictureFrame frameOf(const Snapshot& snapshot, int width, int height) {
@@ -35,7 +36,7 @@ PictureFrame frameOf(const Snapshot& snapshot, int width, int height) {
   frame.bottom = lowerRight.y;
   // A tall picture has no room for the letters that its height would allow.
   frame.unit = std::min(height / 720.0, width / 880.0);
-  frame.darkGround = isDark(snapshot.view.background);
+  frame.darkGround = luminance(snapshot.view.background) < kDarkGround;
   return frame;
 }
 

@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kSlack = 5e-3;  // of the smaller one's size: what touches does not overlap
 constexpr int kMostWarnings = 8;
-constexpr double kSmallest = 1e-7, kLargest = 1e3;     // of the domain's longer side
+constexpr double kSmallest = 1e-7, kLargest = 1e3;  // of the domain's longer side
+constexpr double kFarAway = 10;                     // of that too: of a joint's place outside of it
+constexpr const char* kSideNames[] = {"left", "right", "bottom", "top"};
 constexpr double kLightest = 1e-12, kHeaviest = 1e12;  // kg
 
 /// A body, a particle or a solid at the start.
@@ -157,6 +159,17 @@ struct Checks {
     return thing.body == 0 || spec.bodies[thing.body - 1].family != spec.bodies[thing.body].family;
   }
 
+  /// The first wall that this box reaches into by more than `slack`; -1: none.
+  int wallBehind(Vec2 low, Vec2 high, double slack) const {
+    const Grid& grid = spec.domain.grid;
+    const double beyond[4] = {-low.x, high.x - grid.width(), -low.y, high.y - grid.height()};
+    for (int side = 0; side < 4; ++side) {
+      const WallKind kind = spec.domain.walls[side].kind;
+      if (kind != WallKind::open && kind != WallKind::periodic && beyond[side] > slack) return side;
+    }
+    return -1;
+  }
+
   void checkInside() {
     const double width = spec.domain.grid.width(), height = spec.domain.grid.height();
     int in = 0;
@@ -168,17 +181,10 @@ struct Checks {
         ++outside.try_emplace(body.family, thing.body, 0).first->second.second;
         continue;
       }
-      const double beyond[4] = {-thing.low.x, thing.high.x - width, -thing.low.y, thing.high.y - height};
-      for (int side = 0; side < 4; ++side) {
-        const WallKind kind = spec.domain.walls[side].kind;
-        if (kind == WallKind::open || kind == WallKind::periodic) continue;
-        if (beyond[side] <= kSlack * thing.size()) continue;
-        if (++in > kMostWarnings) break;
-        const char* names[] = {"left", "right", "bottom", "top"};
-        scene.reader().warning(markOf(body), nameOf(thing) + " starts in the " + names[side] + " wall",
+      const int side = wallBehind(thing.low, thing.high, kSlack * thing.size());
+      if (side >= 0 && ++in <= kMostWarnings)
+        scene.reader().warning(markOf(body), nameOf(thing) + " starts in the " + kSideNames[side] + " wall",
                                "it will be pushed out gently");
-        break;
-      }
     }
     for (const auto& [family, first] : outside) {
       const BodySpec& body = spec.bodies[first.first];
@@ -262,9 +268,36 @@ struct Checks {
     for (std::size_t k = 0; k < spec.cloths.size(); ++k) {
       const ClothSpec& cloth = spec.cloths[k];
       const Vec2 high = cloth.corner + cloth.size;
-      if (high.x <= 0 || high.y <= 0 || cloth.corner.x >= width || cloth.corner.y >= height)
-        scene.reader().error(scene.find("cloth")->items[k]->mark,
-                             "`" + cloth.name + "` starts outside of the domain");
+      const YamlMark& mark = scene.find("cloth")->items[k]->mark;
+      if (high.x <= 0 || high.y <= 0 || cloth.corner.x >= width || cloth.corner.y >= height) {
+        scene.reader().error(mark, "`" + cloth.name + "` starts outside of the domain");
+        continue;
+      }
+      const double slack = kSlack * std::min(cloth.size.x, cloth.size.y);
+      const int side = wallBehind(cloth.corner, high, slack);
+      if (side >= 0)
+        scene.reader().warning(mark, "`" + cloth.name + "` starts in the " + kSideNames[side] + " wall",
+                               "it will be pushed out gently, as far as it is not pinned");
+    }
+  }
+
+  /// A place that no body can be near of is most likely a slip.
+  void checkJoints() {
+    const double width = spec.domain.grid.width(), height = spec.domain.grid.height();
+    const double far = kFarAway * std::max(width, height);
+    const auto isFar = [&](const std::optional<Vec2>& place) {
+      return place &&
+             (place->x < -far || place->y < -far || place->x > width + far || place->y > height + far);
+    };
+    for (std::size_t k = 0; k < spec.joints.size(); ++k) {
+      const JointSpec& joint = spec.joints[k];
+      const YamlNode& node = *scene.find("joints")->items[k];
+      for (const auto& [key, place] : {std::pair{"at", &joint.at}, {"from", &joint.from}, {"to", &joint.to}})
+        if (isFar(*place))
+          scene.reader().warning(
+              node.entry(key)->value->mark,
+              "`joints." + std::to_string(k) + "." + key + "` is far outside of the domain",
+              "places of joints are in the world's metres, at the start");
     }
   }
 };
@@ -280,6 +313,7 @@ void checkBodies(MapReader& scene, const SceneSpec& spec) {
   checks.checkOverlaps();
   checks.checkGroups();
   checks.checkCloths();
+  checks.checkJoints();
 }
 
 }  // namespace smokebox

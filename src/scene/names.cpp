@@ -11,8 +11,8 @@ namespace {
 
 constexpr const char* kWorld = "world";
 
-/// The node that `sheet.3.14` names; -1: none.
-int clothNode(const ClothSpec& cloth, const std::string& name) {
+/// The node of this cloth that `sheet.3.14` names; -1: none.
+int nodeOf(const ClothSpec& cloth, const std::string& name) {
   const std::string start = cloth.name + ".";
   if (!name.starts_with(start)) return -1;
   const char* last = name.data() + name.size();
@@ -23,6 +23,14 @@ int clothNode(const ClothSpec& cloth, const std::string& name) {
   if (rowFault != std::errc() || end != last) return -1;
   if (column < 0 || row < 0 || column >= cloth.columns() || row >= cloth.rows()) return -1;
   return column + row * cloth.columns();
+}
+
+/// The particle of a cloth of that name.
+std::optional<Movables::Node> clothNode(const SceneSpec& spec, const std::string& name) {
+  for (std::size_t k = 0; k < spec.cloths.size(); ++k)
+    if (const int node = nodeOf(spec.cloths[k], name); node >= 0)
+      return Movables::Node{static_cast<int>(k), node};
+  return {};
 }
 
 /// The last word of "no body, particle or cloth is named ...": what it may have meant.
@@ -96,17 +104,15 @@ std::optional<HoldSpec> findHold(Reader& reader, const YamlNode& node, const Sce
     }
     return HoldSpec{HoldSpec::Of::body, body, -1, {}};
   }
+  if (spec.names.isPartOfWrong(name)) return {};
   const Named* named = spec.names.find(name);
   if (named && named->of == Named::Of::solid) return HoldSpec{HoldSpec::Of::solid, named->first, -1, {}};
-  for (std::size_t k = 0; k < spec.cloths.size(); ++k) {
-    const int clothsNode = clothNode(spec.cloths[k], name);
-    if (clothsNode >= 0) return HoldSpec{HoldSpec::Of::cloth, static_cast<int>(k), clothsNode, {}};
-    if (spec.cloths[k].name != name) continue;
+  if (const auto found = clothNode(spec, name))
+    return HoldSpec{HoldSpec::Of::cloth, found->cloth, found->node, {}};
+  if (named && named->of == Named::Of::cloth)
     reader.error(node.mark, "`" + name + "` is a cloth; name one of its particles by column and row",
                  meant(spec, name + ".", true));
-    return {};
-  }
-  if (named && named->of == Named::Of::body)
+  else if (named && named->of == Named::Of::body)
     reader.error(node.mark,
                  "`" + name + "` stands for " + std::to_string(named->count) + " copies; name one of them",
                  name + ".0 to " + name + "." + std::to_string(named->count - 1));
@@ -121,12 +127,15 @@ Movables findMovables(Reader& reader, const YamlNode& node, const SceneSpec& spe
   if (named && named->of != Named::Of::solid)
     for (int k = 0; k < named->count; ++k)
       (named->of == Named::Of::body ? found.bodies : found.cloths).push_back(named->first + k);
-  else
+  else if (const auto particle = clothNode(spec, name))
+    found.nodes.push_back(*particle);
+  else if (!spec.names.isPartOfWrong(name))
     reader.error(node.mark, "no body, particle or cloth is named `" + name + "`", meant(spec, name, false));
   return found;
 }
 
 void checkFollowed(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name) {
+  if (spec.names.isPartOfWrong(name)) return;
   std::vector<std::string> known;
   for (const SolidSpec& solid : spec.solids) known.push_back(solid.name);
   for (const BodySpec& body : spec.bodies) known.push_back(body.name);

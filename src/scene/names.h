@@ -25,7 +25,7 @@ void checkName(Reader& reader, const YamlNode& node, const std::string& name);
 std::optional<HoldSpec> findHold(Reader& reader, const YamlNode& node, const SceneSpec& spec,
                                  const std::string& name, bool laterToo);
 
-/// All bodies, particles and cloths that a name stands for. Reports what is none.
+/// All bodies, particles and cloths that a name stands for, or the particle of a cloth. Reports what is none.
 Movables findMovables(Reader& reader, const YamlNode& node, const SceneSpec& spec, const std::string& name);
 
 /// Reports what a probe or the camera cannot follow: all but a solid, a body or a particle.

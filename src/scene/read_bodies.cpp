@@ -200,7 +200,9 @@ int readBody(Reader& reader, const YamlNode& node, const std::string& name, cons
     // Its name stays known, so that nothing else is reported because of it.
     body.shape = std::make_shared<const Shape>(CircleShape{1});
     body.pose = own;
-    addNamed(spec, std::move(body));
+    spec.names.add(body.name, Named::Of::body, static_cast<int>(before));
+    spec.names.markWrong(body.name);
+    spec.bodies.push_back(std::move(body));
     return 1;
   }
   const long copies = block.grid[0] * block.grid[1] * origin.times;

@@ -57,6 +57,7 @@ void readPinned(Reader& reader, const YamlNode& node, const std::string& name, C
 
 void readCloth(Reader& reader, const YamlNode& node, const std::string& name, SceneSpec& spec) {
   MapReader map(reader, node, name);
+  const std::size_t faults = reader.errors();
   ClothSpec cloth;
   if (map.text("name", cloth.name)) {
     checkNewName(reader, *map.find("name"), spec, cloth.name);
@@ -96,7 +97,9 @@ void readCloth(Reader& reader, const YamlNode& node, const std::string& name, Sc
   readGroups(map, cloth.ignore);
   if (const YamlNode* pinned = map.find("pinned")) readPinned(reader, *pinned, inside(name, "pinned"), cloth);
   map.finish();
+  const std::string called = cloth.name;
   addNamed(spec, std::move(cloth));
+  if (reader.errors() > faults) spec.names.markWrong(called);
 }
 
 }  // namespace

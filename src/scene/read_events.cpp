@@ -106,7 +106,7 @@ void readVisibility(EventReader& event, const YamlNode& node, const std::string&
     } else if (isLayerName(name)) {
       reader.error(item.mark, "the view has no layer `" + name + "`",
                    "list it in view.layers: {" + name + ": {shown: false}}");
-    } else {
+    } else if (!event.spec.names.isPartOfWrong(name)) {
       for (const std::string& layer : layers)
         if (std::find(known.begin(), known.end(), layer) == known.end()) known.push_back(layer);
       reader.error(item.mark, "no solid, body or layer is named `" + name + "`", suggestion(name, known));

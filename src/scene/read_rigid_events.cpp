@@ -17,6 +17,7 @@ Movables readMovables(EventReader& event, const YamlNode& node, const std::strin
     const Movables found = findMovables(event.reader(), item, event.spec, name);
     all.bodies.insert(all.bodies.end(), found.bodies.begin(), found.bodies.end());
     all.cloths.insert(all.cloths.end(), found.cloths.begin(), found.cloths.end());
+    all.nodes.insert(all.nodes.end(), found.nodes.begin(), found.nodes.end());
   });
   return all;
 }

@@ -95,10 +95,15 @@ struct ClothSpec {
   }
 };
 
-/// Names that events use, and that nothing else has: bodies (all copies of a `repeat` too), particles and
-/// cloths.
+/// Names that events use, and that nothing else has: bodies (all copies of a `repeat` too), particles, cloths
+/// and their particles.
 struct Movables {
+  struct Node {
+    int cloth, node;
+    bool operator==(const Node&) const = default;
+  };
   std::vector<int> bodies, cloths;
+  std::vector<Node> nodes;
 };
 
 // --- events

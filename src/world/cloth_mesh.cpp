@@ -44,6 +44,7 @@ ClothMesh::ClothMesh(const ClothSpec& spec, std::shared_ptr<const BodyShape> par
       if (j + 2 < rows) farUp_[k] = join(k, node(i, j + 2), spec.bend, kForever, system);
     }
   whole_.assign(static_cast<std::size_t>(columns - 1) * (rows - 1), 1);
+  lost_.assign(whole_.size(), 0);
   slack_.assign(whole_.size(), 0);
 }
 
@@ -57,16 +58,6 @@ ClothMesh::Link ClothMesh::join(int a, int b, double stiffness, double tear, Rig
   spring.damping = spec_.damping * stiffness / spec_.stiffness;
   spring.tear = tear;
   return {system.addSpring(spring), true, spring.length, 0};
-}
-
-void ClothMesh::hold(bool held, RigidSystem& system) const {
-  for (const int body : bodies_) {
-    if (!system.isThere(body)) continue;
-    if (held)
-      system.hold(body);
-    else
-      system.release(body);
-  }
 }
 
 void ClothMesh::remove(RigidSystem& system) const {
@@ -105,9 +96,17 @@ void ClothMesh::dropTorn(RigidSystem& system) {
       const int k = node(i, j);
       if (i + 2 < columns && !(right_[k].there && right_[k + 1].there)) drop(farRight_[k]);
       if (j + 2 < rows && !(up_[k].there && up_[k + columns].there)) drop(farUp_[k]);
-      if (i + 1 < columns && j + 1 < rows)
-        whole_[i + static_cast<std::size_t>(j) * (columns - 1)] = cellIsWhole(i, j);
+      if (i + 1 == columns || j + 1 == rows) continue;
+      const std::size_t cell = i + static_cast<std::size_t>(j) * (columns - 1);
+      lost_[cell] = lostCorner(i, j, system);
+      whole_[cell] = !lost_[cell] && cellIsWhole(i, j);
     }
+}
+
+bool ClothMesh::lostCorner(int i, int j, const RigidSystem& system) const {
+  const int k = node(i, j), above = node(i, j + 1);
+  return !(system.isThere(bodies_[k]) && system.isThere(bodies_[k + 1]) && system.isThere(bodies_[above]) &&
+           system.isThere(bodies_[above + 1]));
 }
 
 bool ClothMesh::cellIsWhole(int i, int j) const {
@@ -129,9 +128,14 @@ void ClothMesh::loosen(RigidSystem& system, double dt) {
   for (int j = 0; j + 1 < rows; ++j)
     for (int i = 0; i + 1 < columns; ++i) {
       const int k = node(i, j);
+      const std::size_t cell = i + static_cast<std::size_t>(j) * (columns - 1);
+      float& slack = slack_[cell];
+      if (lost_[cell]) {
+        slack = 0;
+        continue;
+      }
       auto at = [&](int corner) { return system.positionBeside(bodies_[corner], bodies_[k]); };
       const double area = 0.5 * cross(at(k + columns + 1) - at(k), at(k + columns) - at(k + 1));
-      float& slack = slack_[i + static_cast<std::size_t>(j) * (columns - 1)];
       slack = area < kTurned * flat ? 1 : std::max(0.0f, slack - static_cast<float>(dt / kRecovery));
       slackened_ |= slack > 0;
     }

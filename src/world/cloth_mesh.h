@@ -33,7 +33,6 @@ class ClothMesh {
   const std::vector<int>& bodies() const { return bodies_; }
   bool shown = true;
 
-  void hold(bool held, RigidSystem& system) const;
   void remove(RigidSystem& system) const;
   bool isThere(const RigidSystem& system) const;
   /// After a step: what has torn, and what is turned over.
@@ -50,6 +49,7 @@ class ClothMesh {
   int node(int i, int j) const { return i + j * spec_.columns(); }
   Link join(int a, int b, double stiffness, double tear, RigidSystem& system) const;
   void dropTorn(RigidSystem& system);
+  bool lostCorner(int i, int j, const RigidSystem& system) const;
   bool cellIsWhole(int i, int j) const;
   void loosen(RigidSystem& system, double dt);
   float slackAt(int i, int j) const;
@@ -58,10 +58,10 @@ class ClothMesh {
   std::vector<int> bodies_;
   // By the node that they start from: to the right and upwards, one and two cells far; and by the cell.
   std::vector<Link> right_, up_, farRight_, farUp_, rising_, falling_;
-  std::vector<char> whole_;
-  std::vector<float> slack_;  // by cell: 1 while it is turned over, then less and less
-  bool slackened_ = false;    // one is over 0
-  long removed_ = 0;          // springs of the system that were gone at the last look
+  std::vector<char> whole_, lost_;  // by cell; lost: a corner of it has been removed
+  std::vector<float> slack_;        // by cell: 1 while it is turned over, then less and less
+  bool slackened_ = false;          // one is over 0
+  long removed_ = 0;                // springs of the system that were gone at the last look
 };
 
 }  // namespace smokebox

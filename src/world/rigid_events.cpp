@@ -32,6 +32,9 @@ void RigidStage::impulse(const ImpulseAction& action) {
     for (const int id : cloth.bodies())
       if (system_.isThere(id)) system_.applyImpulse(id, system_.position(id), share * action.value);
   }
+  for (const auto [index, node] : action.on.nodes)
+    if (const int id = cloths_[index].body(node); system_.isThere(id))
+      system_.applyImpulse(id, system_.position(id), action.value);
 }
 
 void RigidStage::pull(const PullAction& action, double time) {
@@ -48,19 +51,27 @@ void RigidStage::pull(const PullAction& action, double time) {
 
 void RigidStage::hold(const HoldAction& action) {
   for (const int index : action.what.bodies) {
-    if (!isThere(bodies_[index])) continue;
-    if (action.held)
-      system_.hold(bodies_[index].id);
-    else
-      system_.release(bodies_[index].id);
+    hold(bodies_[index].id, action.held);
     std::erase(held_, index);  // the event has the last word
   }
-  for (const int index : action.what.cloths) cloths_[index].hold(action.held, system_);
+  for (const int index : action.what.cloths)
+    for (const int id : cloths_[index].bodies()) hold(id, action.held);
+  for (const auto [index, node] : action.what.nodes) hold(cloths_[index].body(node), action.held);
+}
+
+void RigidStage::hold(int id, bool held) {
+  if (!system_.isThere(id)) return;
+  if (held)
+    system_.hold(id);
+  else
+    system_.release(id);
 }
 
 void RigidStage::remove(const RemoveAction& action) {
   for (const int index : action.what.bodies)
     if (isThere(bodies_[index])) system_.remove(bodies_[index].id);
+  for (const auto [index, node] : action.what.nodes)
+    if (const int id = cloths_[index].body(node); system_.isThere(id)) system_.remove(id);
   for (const int index : action.what.cloths) {
     cloths_[index].remove(system_);
     clothIsThere_[index] = 0;

@@ -97,6 +97,7 @@ class RigidStage {
   Anchor anchorAt(const HoldSpec& hold, Vec2 at) const;
   Vec2 centreNow(const HoldSpec& hold) const;
 
+  void hold(int id, bool held);
   void adoptBody(Body& body, const BodySpec& now, const std::string& key);
   void adoptLinks(const SceneSpec& spec, const std::vector<std::string>& steps);
 

@@ -69,5 +69,55 @@ TEST(WorldCloth, WhatIsBlownOverItsRailHangsAgain) {
   }
 }
 
+World sheetWorld(const std::string& more) {
+  return World(
+      SceneDocument::parse("domain: {size: [4, 4], resolution: 32}\n"
+                           "time: {step: 1/120, duration: 4}\n"
+                           "cloth: [{name: s, corner: [1, 2], size: [1, 1], cells: [4, 4], mass: 2.5, "
+                           "stiffness: 400" +
+                               more + "view: {layers: [cloth]}\n",
+                           "test.yaml"),
+      {.figures = true});
+}
+
+TEST(WorldCloth, EventsReachItsParticles) {
+  // Truth: an impulse on one of them is the cloth's momentum; one that is held stays where it is and the
+  // others hang from it until it is released.
+  World world = sheetWorld(
+      ", pinned: none}]\n"
+      "events:\n- {at: 0.1, impulse: {body: s.1.2, value: [2, -1]}}\n"
+      "- {at: 0.2, hold: s.2.4}\n- {at: 0.2, set: {gravity: [0, -10]}}\n"
+      "- {at: 2, release: s.2.4}\n");
+  const auto run = [&](double until) {
+    while (world.stepCount() < std::lround(until * 120)) world.step();
+    Snapshot snapshot;
+    world.capture(snapshot);
+    return snapshot.cloths.at(0);
+  };
+  run(0.2);
+  EXPECT_NEAR(world.figures().momentum.x, 2, 1e-9);
+  EXPECT_NEAR(world.figures().momentum.y, -1, 1e-9);
+  const Vec2 held = run(0.21).positions[22];
+  const ClothPicture hanging = run(2);
+  EXPECT_EQ(hanging.positions[22], held);
+  for (int k = 0; k < 20; ++k) EXPECT_LT(hanging.positions[k].y, held.y);
+  EXPECT_LT(run(2.25).positions[22].y, held.y - 0.1);
+}
+
+TEST(WorldCloth, AParticleThatIsRemovedLeavesAHole) {
+  // Truth: the four cells around it are gone, with shear springs and without, and no thread leads to it.
+  for (const char* shear : {"", ", shear: 0"}) {
+    World world = sheetWorld(std::string(shear) + "}]\nevents: [{at: 0.1, remove: s.2.2}]\n");
+    while (world.stepCount() < 60) world.step();
+    Snapshot snapshot;
+    world.capture(snapshot);
+    const ClothPicture& cloth = snapshot.cloths.at(0);
+    std::vector<char> whole(16, 1);
+    for (const int cell : {5, 6, 9, 10}) whole[cell] = 0;
+    EXPECT_EQ(cloth.whole, whole) << shear;
+    for (const auto& thread : cloth.threads) EXPECT_TRUE(thread[0] != 12 && thread[1] != 12) << shear;
+  }
+}
+
 }  // namespace
 }  // namespace smokebox

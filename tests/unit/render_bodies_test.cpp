@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/maths.h"
+#include "render/batches.h"
 #include "render/body_mark.h"
 #include "render/cloth_lines.h"
 #include "render/link_shapes.h"
@@ -164,6 +165,23 @@ TEST(RenderBodies, NeighboursDifferInColour) {
       EXPECT_GT(std::hypot(p.r - q.r, p.g - q.g, p.b - q.b), 0.15) << a << " " << b;
     }
   EXPECT_EQ(bodyColor(3), bodyColor(13));
+}
+
+TEST(RenderBodies, OutlinesAreSeenOnAnyFill) {
+  // Contrast at least 1.35 to 1 on the fill, whatever it is: darker, but on what is nearly black.
+  const auto contrast = [](const Color& fill) {
+    const double a = luminance(fill) + 0.05, b = luminance(outlineColor(fill)) + 0.05;
+    return std::max(a, b) / std::min(a, b);
+  };
+  for (int r = 0; r <= 10; ++r)
+    for (int g = 0; g <= 10; ++g)
+      for (int b = 0; b <= 10; ++b) {
+        const Color fill{0.1f * r, 0.1f * g, 0.1f * b};
+        EXPECT_GE(contrast(fill), 1.35) << r << " " << g << " " << b;
+      }
+  EXPECT_EQ(outlineColor({1, 1, 1}), (Color{0.5f, 0.5f, 0.5f}));
+  EXPECT_EQ(outlineColor({0, 0, 0}), (Color{0.5f, 0.5f, 0.5f}));
+  for (int k = 0; k < 10; ++k) EXPECT_LT(luminance(outlineColor(bodyColor(k))), luminance(bodyColor(k)));
 }
 
 /// `columns` x `rows` nodes, a metre apart.

@@ -143,6 +143,24 @@ TEST(SceneBodies, NamesStandForOneOrForAllCopies) {
               {"`r` stands for 3 copies; name one of them", "r.0 to r.2"});
 }
 
+TEST(SceneBodies, PartsOfWhatIsWrongAreNotReportedToo) {
+  // Truth: the fault itself and nothing that follows from it, though its copies and particles are not known.
+  expectFault(
+      "bodies:\n- {name: a, shape: {circle: {radius: 0.1}}, position: [0.2, 1.5]}\n"
+      "- {name: r, shape: {circle: {radius: -1}}, position: [0.2, 1], repeat: {grid: [3, 1], spacing: [1, "
+      "1]}}\n"
+      "springs: [{from: {body: r.1}, to: {body: a}, stiffness: 1}]\njoints: [{weld: [r.2, a]}]\n"
+      "events: [{at: 1, hold: r.0}, {at: 2, impulse: {body: r.0, value: [1, 0]}}, {at: 3, hide: r.0}]\n",
+      {"s.yaml:4:", "larger than 0"});
+  expectFault(kBall +
+                  "cloth: [{name: sheet, corner: [0, 0], size: [1, 1], cells: [0, 3]}]\n"
+                  "springs: [{from: {body: sheet.3.3}, to: {body: ball}, stiffness: 1}]\n"
+                  "events: [{at: 1, release: sheet.2.2}]\n",
+              {"s.yaml:3:", "cloth.0.cells.0"});
+  // And of what is right, they are.
+  EXPECT_NE(problemsOf(kBall + "events: [{at: 1, hold: ball.0}]\n").find("ball.0"), std::string::npos);
+}
+
 TEST(SceneBodies, ManyNamesAreReadAsQuicklyAsFew) {
   // Truth: a body of 8,000 takes as long to read as one of 1,000, but for what memory costs.
   const auto secondsEach = [](int count) {
@@ -220,6 +238,9 @@ TEST(SceneBodies, PlacesThatCannotBeAreTold) {
   expectFault("bodies:\n" + at("a", "[1, -0.2]"), {"s.yaml:3:3: `a` starts outside of the domain"});
   expectFault("bodies:\n" + at("a", "[1, 0.05]"), {"s.yaml:3:3: warning: `a` starts in the bottom wall"});
   EXPECT_EQ(problemsOf("walls: {bottom: open}\nbodies:\n" + at("a", "[1, 0.05]")), "");
+  const std::string cloth = "cloth: [{name: s, corner: [3.5, 1], size: [1, 0.5], cells: [4, 4]}]\n";
+  expectFault(cloth, {"s.yaml:2:9: warning: `s` starts in the right wall", "not pinned"});
+  EXPECT_EQ(problemsOf("walls: {right: open}\n" + cloth), "");
   expectFault("bodies:\n" + at("a", "[1, 1]") + at("b", "[1.1, 1.1]"),
               {"s.yaml:4:3: warning: `a` and `b` start inside of each other", "part gently"});
   expectFault(
@@ -395,6 +416,15 @@ TEST(SceneBodies, JointsThatAreWrongAreRefused) {
   expectFault(joint("rope: [ball, arm], length: 0.5"), {"warning", "too short"});
 }
 
+TEST(SceneBodies, PlacesOfJointsThatNoBodyCanBeNearAreTold) {
+  // Truth: beyond ten times the domain there is a warning at the place, and none for a long pendulum's pivot.
+  expectFault(kBall + "joints: [{pin: [world, ball], at: [1000, 1]}]\n",
+              {"s.yaml:3:35: warning: `joints.0.at` is far outside of the domain"});
+  expectFault(kBall + "joints: [{rope: [world, ball], from: [1, -400]}]\n",
+              {"s.yaml:3:38: warning: `joints.0.from` is far"});
+  EXPECT_EQ(problemsOf(kBall + "joints: [{pin: [world, ball], at: [1, 30]}]\n"), "");
+}
+
 TEST(SceneBodies, ClothIsRead) {
   // Truth: what stands in the text, and where its particles are; pins of each kind.
   const std::string sheet =
@@ -435,6 +465,21 @@ TEST(SceneBodies, AParticleOfAClothCanBeHeldByASpring) {
               {"sheet.0.0 to sheet.4.2"});
   expectFault(sheet + "springs: [{from: {body: sheet}, to: {body: ball}, stiffness: 1}]\n",
               {"is a cloth", "sheet.0.0 to sheet.4.2"});
+}
+
+TEST(SceneBodies, EventsActOnParticlesOfACloth) {
+  const std::string sheet =
+      kBall + "cloth: [{name: sheet, corner: [2, 0.5], size: [1, 1], cells: [4, 2]}]\nevents:\n";
+  const SceneSpec spec = specOf(sheet +
+                                "- {at: 1, impulse: {body: sheet.4.1, value: [1, 0]}}\n"
+                                "- {at: 2, hold: [sheet.0.2, ball, sheet]}\n- {at: 3, remove: sheet.2.1}\n");
+  using Node = Movables::Node;
+  EXPECT_EQ(std::get<ImpulseAction>(spec.events[0].action).on.nodes, (std::vector{Node{0, 9}}));
+  EXPECT_EQ(std::get<HoldAction>(spec.events[1].action).what.nodes, (std::vector{Node{0, 10}}));
+  EXPECT_EQ(std::get<HoldAction>(spec.events[1].action).what.bodies, std::vector<int>{0});
+  EXPECT_EQ(std::get<HoldAction>(spec.events[1].action).what.cloths, std::vector<int>{0});
+  EXPECT_EQ(std::get<RemoveAction>(spec.events[2].action).what.nodes, (std::vector{Node{0, 7}}));
+  expectFault(sheet + "- {at: 1, hold: sheet.5.1}\n", {"s.yaml:5:", "sheet.0.0 to sheet.4.2"});
 }
 
 TEST(SceneBodies, EventsActOnBodies) {
