@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include "scene/nearest.h"
 
@@ -31,6 +32,9 @@ std::vector<const char*> defaultLayers(const YamlNode& root) {
 }
 
 namespace {
+
+/// Sections of a scene that are lists of things.
+constexpr const char* kLists[] = {"solids", "probes", "bodies", "particles", "springs", "joints", "cloth"};
 
 std::string itemName(const YamlNode& item) {
   const YamlEntry* name = item.entry("name");
@@ -126,7 +130,8 @@ struct Walk {
     if (isLayers(depth) && (!old || old->kind == YamlNode::Kind::null)) {
       copy = layersByDefault();
     } else if (!old || old->kind == YamlNode::Kind::null) {
-      if (std::all_of(step.begin(), step.end(), [](char c) { return c >= '0' && c <= '9'; }))
+      if ((depth == 1 && std::find(std::begin(kLists), std::end(kLists), steps[0]) != std::end(kLists)) ||
+          std::all_of(step.begin(), step.end(), [](char c) { return c >= '0' && c <= '9'; }))
         fail("`" + path + "`: the scene has no list `" + before(depth) + "`", "give the whole list");
       copy = newMap();
     } else {
@@ -207,7 +212,7 @@ std::string whyFixed(const std::string& path) {
     if (first == fixed) return "`" + first + "` cannot change during a run";
   if (first == "temperature" && (steps.size() < 2 || steps[1] == "start"))
     return "`" + path + "` cannot change during a run";
-  for (const char* list : {"solids", "probes", "bodies", "particles", "springs", "joints", "cloth"}) {
+  for (const char* list : kLists) {
     if (first != list) continue;
     if (steps.size() < 3) return "the list of `" + first + "` cannot change during a run";
     const auto& fixed = fixedKeys(first);

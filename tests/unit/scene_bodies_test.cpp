@@ -537,6 +537,8 @@ TEST(SceneBodies, EventsThatAreWrongAreRefused) {
   expectFault(event("set: {bodies.ball.shape: {circle: {radius: 1}}}"), {"cannot change during a run"});
   expectFault(event("set: {bodies.ball.bounce: 2}"), {"setting `bodies.ball.bounce`", "between 0 and 1"});
   expectFault(event("set: {bodies.bal.velocity: [1, 0]}"), {"did you mean `ball`?"});
+  expectFault("events: [{at: 1, set: {bodies.ball.velocity: [1, 0]}}]\n",
+              {"s.yaml:2:24", "the scene has no list `bodies`"});
   EXPECT_EQ(problemsOf(event("set: {bodies.ball.velocity: [1, 0]}")), "");
   const std::string added =
       "events: [{at: 1, add: {body: {name: late, shape: {circle: {radius: 0.1}}, position: [3, 1]}}}]\n";
