@@ -13,13 +13,6 @@ constexpr double kNoDistance = 1e-30;  // m^2
 // (w h)^2 across its line at which a spring gets a row across.
 constexpr double kSwings = 0.25;
 
-/// To 14 digits: from the root and quotient of seven digits, which are several times as fast, by a step of
-/// Newton's.
-inline double inverseRoot(double square) {
-  const double about = static_cast<double>(1 / std::sqrt(static_cast<float>(square)));
-  return about * (1.5 - 0.5 * square * about * about);
-}
-
 }  // namespace
 
 void SpringLaws::assign(int slots) {
@@ -41,7 +34,8 @@ void SpringLaws::set(int slot, const SpringDef& def, double inertia, double h) {
   rates = rates || perRate[slot] != 0;
 }
 
-/// In loops that do the same to every spring, so that they run several at a time.
+/// In loops that do the same to every spring, so that they run many at a time. The stretch of a spring that
+/// is all but at rest keeps seven digits of its own, for the squares are subtracted before any is lost.
 void SpringRows::find(const SpringLaws& laws, int slot, int count, SpringMatrices& out) {
   const double* rest = &laws.length[slot];
   const float *slack = &laws.slack[slot], *perStretch = &laws.perStretch[slot],
@@ -49,31 +43,31 @@ void SpringRows::find(const SpringLaws& laws, int slot, int count, SpringMatrice
   float *xx = &out.xx[slot], *xy = &out.xy[slot], *yy = &out.yy[slot];
   const SpringEnds at = place, speed = velocity;
   const auto perMass = static_cast<float>(1 / mass);
-  double most = 0;
+  float most = 0;
 #pragma omp simd reduction(max : most)
   for (int k = 0; k < count; ++k) {
     const double dx = at.x(k), dy = at.y(k);
     const double square = dx * dx + dy * dy > kNoDistance ? dx * dx + dy * dy : kNoDistance;
-    const double inverse = inverseRoot(square);
-    const double pulled = square * inverse - rest[k], pushed = pulled + static_cast<double>(slack[k]);
+    const auto excess = static_cast<float>(square - rest[k] * rest[k]), length = static_cast<float>(rest[k]);
+    const float distance = std::sqrt(static_cast<float>(square)), inverse = 1 / distance;
+    const float pulled = excess / (distance + length), pushed = pulled + slack[k];
     // Between the two lengths it is slack.
-    const double stretch = (pulled > 0 ? pulled : 0) + (pushed < 0 ? pushed : 0);
-    const double holds = pulled >= 0 || pushed <= 0 ? 1.0 : 0.0;
-    const double ux = dx * inverse, uy = dy * inverse;
-    const double hard = holds * static_cast<double>(hardness[k]);
-    const double pull =
-        static_cast<double>(perStretch[k]) * stretch + hard * (speed.x(k) * ux + speed.y(k) * uy);
-    const double across = static_cast<double>(squared[k]) * stretch * inverse;
+    const float stretch = (pulled > 0 ? pulled : 0) + (pushed < 0 ? pushed : 0);
+    const float holds = pulled >= 0 || pushed <= 0 ? 1.0f : 0.0f;
+    const float ux = static_cast<float>(dx) * inverse, uy = static_cast<float>(dy) * inverse;
+    const float hard = holds * hardness[k];
+    const float rate = static_cast<float>(speed.x(k)) * ux + static_cast<float>(speed.y(k)) * uy;
+    const float pull = perStretch[k] * stretch + hard * rate;
+    const float across = squared[k] * stretch * inverse;
     x[k] = ux, y[k] = uy;
     stretch_[k] = stretch, inverse_[k] = inverse, holds_[k] = holds, across_[k] = across;
     most = most > across ? most : across;
     pullX[k] = pull * ux;
     pullY[k] = pull * uy;
-    const auto shortX = static_cast<float>(ux), shortY = static_cast<float>(uy);
-    const float unit = static_cast<float>(hard) * perMass;
-    xx[k] = unit * shortX * shortX;
-    xy[k] = unit * shortX * shortY;
-    yy[k] = unit * shortY * shortY;
+    const float unit = hard * perMass;
+    xx[k] = unit * ux * ux;
+    xy[k] = unit * ux * uy;
+    yy[k] = unit * uy * uy;
   }
   if (laws.rates) addRates(laws, slot, count);
   if (most > kSwings) stiffenAcross(laws, slot, count, out);
@@ -82,11 +76,12 @@ void SpringRows::find(const SpringLaws& laws, int slot, int count, SpringMatrice
 void SpringRows::addRates(const SpringLaws& laws, int slot, int count) {
   const float* perRate = &laws.perRate[slot];
   const SpringEnds before = moved;
-  const double perSecond = 1 / hBefore;
+  const auto perSecond = static_cast<float>(1 / hBefore);
 #pragma omp simd
   for (int k = 0; k < count; ++k) {
-    const double rate = (before.x(k) * x[k] + before.y(k) * y[k]) * perSecond;
-    const double pull = holds_[k] * static_cast<double>(perRate[k]) * rate;
+    const float rate =
+        (static_cast<float>(before.x(k)) * x[k] + static_cast<float>(before.y(k)) * y[k]) * perSecond;
+    const float pull = holds_[k] * perRate[k] * rate;
     pullX[k] += pull * x[k];
     pullY[k] += pull * y[k];
   }
@@ -99,17 +94,19 @@ void SpringRows::stiffenAcross(const SpringLaws& laws, int slot, int count, Spri
   const double perSecond = 1 / hBefore, perMass = 1 / mass, step = h;
 #pragma omp simd
   for (int k = 0; k < count; ++k) {
-    const double weight = smoothStep((across_[k] - kSwings) * (4.0 / 3));
-    const SpringShares shares = sharesOf(across_[k]);
-    const double tight = weight * step * static_cast<double>(perStretch[k]) * stretch_[k] * inverse_[k];
+    const double ux = static_cast<double>(x[k]), uy = static_cast<double>(y[k]),
+                 turning = static_cast<double>(across_[k]);
+    const double weight = smoothStep((turning - kSwings) * (4.0 / 3));
+    const SpringShares shares = sharesOf(turning);
+    const double tight = weight * step * static_cast<double>(perStretch[k] * stretch_[k] * inverse_[k]);
     const double hard = tight * shares.now;
-    const double rate = (before.y(k) * x[k] - before.x(k) * y[k]) * perSecond;
-    const double pull = hard * (speed.y(k) * x[k] - speed.x(k) * y[k]) - tight * shares.before * rate;
-    xx[k] += static_cast<float>(hard * perMass * y[k] * y[k]);
-    xy[k] -= static_cast<float>(hard * perMass * x[k] * y[k]);
-    yy[k] += static_cast<float>(hard * perMass * x[k] * x[k]);
-    pullX[k] -= pull * y[k];
-    pullY[k] += pull * x[k];
+    const double rate = (before.y(k) * ux - before.x(k) * uy) * perSecond;
+    const double pull = hard * (speed.y(k) * ux - speed.x(k) * uy) - tight * shares.before * rate;
+    xx[k] += static_cast<float>(hard * perMass * uy * uy);
+    xy[k] -= static_cast<float>(hard * perMass * ux * uy);
+    yy[k] += static_cast<float>(hard * perMass * ux * ux);
+    pullX[k] -= static_cast<float>(pull * uy);
+    pullY[k] += static_cast<float>(pull * ux);
   }
 }
 

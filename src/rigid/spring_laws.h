@@ -35,7 +35,7 @@ struct SpringRows {
   SpringEnds place, moved, velocity;
   double h, hBefore, mass;  // s; of a unit of mass in the matrices, kg
   // Out: the lines' directions; bias + matrix (vb - va).
-  double x[kMost], y[kMost], pullX[kMost], pullY[kMost];
+  float x[kMost], y[kMost], pullX[kMost], pullY[kMost];
 
   void find(const SpringLaws& laws, int slot, int count, SpringMatrices& out);
 
@@ -43,7 +43,7 @@ struct SpringRows {
   void addRates(const SpringLaws& laws, int slot, int count);
   void stiffenAcross(const SpringLaws& laws, int slot, int count, SpringMatrices& out);
 
-  double inverse_[kMost], stretch_[kMost], holds_[kMost], across_[kMost];
+  float inverse_[kMost], stretch_[kMost], holds_[kMost], across_[kMost];
 };
 
 }  // namespace smokebox

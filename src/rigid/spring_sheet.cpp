@@ -139,9 +139,12 @@ void SpringSheet::findRows() {
       rows.find(laws_, band.slot + begin, count, matrices_);
       double *x = pulls_.x(), *y = pulls_.y();
 #pragma omp simd
-      for (int k = 0; k < count; ++k) x[begin + k] -= rows.pullX[k], y[begin + k] -= rows.pullY[k];
+      for (int k = 0; k < count; ++k)
+        x[begin + k] -= static_cast<double>(rows.pullX[k]),
+            y[begin + k] -= static_cast<double>(rows.pullY[k]);
 #pragma omp simd
-      for (int k = 0; k < count; ++k) x[next + k] += rows.pullX[k], y[next + k] += rows.pullY[k];
+      for (int k = 0; k < count; ++k)
+        x[next + k] += static_cast<double>(rows.pullX[k]), y[next + k] += static_cast<double>(rows.pullY[k]);
     }
   if (!bands_.looseEnds().empty()) findLooseRows(rows);
 }
@@ -167,8 +170,9 @@ void SpringSheet::findLooseRows(SpringRows& rows) {
     rows.find(laws_, bands_.firstLoose() + begin, count, matrices_);
     for (int k = 0; k < count; ++k) {
       const auto& [a, b] = ends[k];
-      x[a] -= rows.pullX[k], y[a] -= rows.pullY[k];
-      x[b] += rows.pullX[k], y[b] += rows.pullY[k];
+      const auto pullX = static_cast<double>(rows.pullX[k]), pullY = static_cast<double>(rows.pullY[k]);
+      x[a] -= pullX, y[a] -= pullY;
+      x[b] += pullX, y[b] += pullY;
     }
   }
 }
@@ -198,7 +202,7 @@ double SpringSheet::tension(int spring) const {
   row.place = ends(place_), row.moved = ends(moved_), row.velocity = ends(left_);
   row.h = h_, row.hBefore = hBefore_, row.mass = 1;
   row.find(law, 0, 1, matrix);
-  return (row.pullX[0] * row.x[0] + row.pullY[0] * row.y[0]) / h_;
+  return static_cast<double>(row.pullX[0] * row.x[0] + row.pullY[0] * row.y[0]) / h_;
 }
 
 std::size_t SpringSheet::bytes() const {

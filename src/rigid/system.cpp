@@ -282,6 +282,7 @@ void RigidSystem::hashInto(Fnv1a& hash) const {
   for (int b = 0; b < bodies.count(); ++b) {
     hash.update(&bodies.there[b], 1);
     hash.update(&bodies.position[b], sizeof(Vec2));
+    hash.update(&bodies.wound[b], sizeof(Vec2));
     hash.update(&bodies.angleRad[b], sizeof(double));
     hash.update(&bodies.velocity[b], sizeof(Motion));
   }
