@@ -18,7 +18,7 @@ struct ThreadPool::State {
   // `ticket`: generation of the loop, whether it may still be joined, and how many workers are in it.
   static constexpr std::uint64_t kActive = 0xffff, kOpen = 0x10000;
   static constexpr int kGenerationShift = 17;
-  static constexpr int kSpins = 200;
+  static constexpr int kSpins = 1000;
 
   /// A thread's own part of a loop: it begins there, and then helps the others. What one loop has left in a
   /// core's cache the next one finds there.

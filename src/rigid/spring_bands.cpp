@@ -10,10 +10,14 @@ namespace smokebox {
 namespace {
 // A band has at least one spring to so many nodes.
 constexpr int kSparse = 8;
+// Fewer nodes than this are not worth another thread.
+constexpr int kPart = 1200;
 }  // namespace
 
 void SpringBands::layOut(int nodes, const std::vector<std::array<int, 2>>& ends) {
   nodes_ = roundedToLanes(nodes);
+  const int parts = std::max(1, nodes_ / kPart);
+  grain_ = roundedToLanes((nodes_ + parts - 1) / parts);
   bands_.clear();
   looseEnds_.clear();
   slotOf_.assign(ends.size(), -1);
@@ -57,14 +61,14 @@ void SpringBands::layOut(int nodes, const std::vector<std::array<int, 2>>& ends)
 }
 
 template <class Number>
-double SpringBands::multiplyAs(const SpringMatrices& m, const Number* mass, const NodeField<Number>& p,
-                               NodeField<Number>& out) const {
+double SpringBands::multiplyBands(const SpringMatrices& m, const Number* mass, const NodeField<Number>& p,
+                                  NodeField<Number>& out, int first, int last) const {
   using Many = typename LanesOf<Number>::Type;
   const Number *px = p.x(), *py = p.y();
   const float *xx = m.xx.data(), *xy = m.xy.data(), *yy = m.yy.data();
   Number *outX = out.x(), *outY = out.y();
   Many sum{};
-  for (int k = 0; k < nodes_; k += LanesOf<Number>::kCount) {
+  for (int k = first; k < last; k += LanesOf<Number>::kCount) {
     const Many x = load(px + k), y = load(py + k);
     Many sumX{}, sumY{}, along, mixed, across;
     if (mass) {
@@ -72,7 +76,7 @@ double SpringBands::multiplyAs(const SpringMatrices& m, const Number* mass, cons
       sumX = own * x, sumY = own * y;
     }
     for (const Band& band : bands_) {
-      const std::ptrdiff_t offset = band.offset, next = k + offset, last = k - offset;
+      const std::ptrdiff_t offset = band.offset, next = k + offset, before = k - offset;
       std::ptrdiff_t at = band.slot + k;
       loadAs(xx + at, along), loadAs(xy + at, mixed), loadAs(yy + at, across);
       Many dx = x - load(px + next), dy = y - load(py + next);
@@ -80,7 +84,7 @@ double SpringBands::multiplyAs(const SpringMatrices& m, const Number* mass, cons
       sumY += mixed * dx + across * dy;
       at -= offset;
       loadAs(xx + at, along), loadAs(xy + at, mixed), loadAs(yy + at, across);
-      dx = x - load(px + last), dy = y - load(py + last);
+      dx = x - load(px + before), dy = y - load(py + before);
       sumX += along * dx + mixed * dy;
       sumY += mixed * dx + across * dy;
     }
@@ -88,7 +92,17 @@ double SpringBands::multiplyAs(const SpringMatrices& m, const Number* mass, cons
     store(outY + k, sumY);
     sum += x * sumX + y * sumY;
   }
-  double total = sumOf(sum);
+  return sumOf(sum);
+}
+
+template <class Number>
+double SpringBands::multiplyAs(const SpringMatrices& m, const Number* mass, const NodeField<Number>& p,
+                               NodeField<Number>& out, ThreadPool& pool) const {
+  double total = pool.sum(0, nodes_, grain_,
+                          [&](int first, int last) { return multiplyBands(m, mass, p, out, first, last); });
+  const Number *px = p.x(), *py = p.y();
+  const float *xx = m.xx.data(), *xy = m.xy.data(), *yy = m.yy.data();
+  Number *outX = out.x(), *outY = out.y();
   for (std::size_t k = 0; k < looseEnds_.size(); ++k) {
     const auto& [a, b] = looseEnds_[k];
     const std::size_t s = firstLoose_ + k;
@@ -102,13 +116,13 @@ double SpringBands::multiplyAs(const SpringMatrices& m, const Number* mass, cons
 }
 
 double SpringBands::multiply(const SpringMatrices& m, const double* mass, const NodeField<double>& p,
-                             NodeField<double>& out) const {
-  return multiplyAs(m, mass, p, out);
+                             NodeField<double>& out, ThreadPool& pool) const {
+  return multiplyAs(m, mass, p, out, pool);
 }
 
 double SpringBands::multiply(const SpringMatrices& m, const float* mass, const NodeField<float>& p,
-                             NodeField<float>& out) const {
-  return multiplyAs(m, mass, p, out);
+                             NodeField<float>& out, ThreadPool& pool) const {
+  return multiplyAs(m, mass, p, out, pool);
 }
 
 std::size_t SpringBands::bytes() const {

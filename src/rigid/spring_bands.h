@@ -9,6 +9,8 @@
 #include <array>
 #include <vector>
 
+#include "base/threads.h"
+
 namespace smokebox {
 
 /// x and y of every node, apart, with zeros before the first node and after the last one.
@@ -61,23 +63,31 @@ class SpringBands {
   int firstLoose() const { return firstLoose_; }
   const std::vector<std::array<int, 2>>& looseEnds() const { return looseEnds_; }
 
+  /// How far the second node of a spring in a band may be from its first one, at most.
+  int reach() const { return before_; }
+  /// Nodes that a thread does at once: the same parts for any number of threads.
+  int grain() const { return grain_; }
+
   /// out = J^T matrices J p, and mass p where there are masses; returns p . out.
   double multiply(const SpringMatrices& m, const double* mass, const NodeField<double>& p,
-                  NodeField<double>& out) const;
+                  NodeField<double>& out, ThreadPool& pool) const;
   double multiply(const SpringMatrices& m, const float* mass, const NodeField<float>& p,
-                  NodeField<float>& out) const;
+                  NodeField<float>& out, ThreadPool& pool) const;
 
   std::size_t bytes() const;
 
  private:
   template <class Number>
   double multiplyAs(const SpringMatrices& m, const Number* mass, const NodeField<Number>& p,
-                    NodeField<Number>& out) const;
+                    NodeField<Number>& out, ThreadPool& pool) const;
+  template <class Number>
+  double multiplyBands(const SpringMatrices& m, const Number* mass, const NodeField<Number>& p,
+                       NodeField<Number>& out, int first, int last) const;
 
   std::vector<Band> bands_;
   std::vector<int> slotOf_;
   std::vector<std::array<int, 2>> looseEnds_;
-  int nodes_ = 0, before_ = 0, slots_ = 0, firstLoose_ = 0;
+  int nodes_ = 0, before_ = 0, slots_ = 0, firstLoose_ = 0, grain_ = 1;
 };
 
 }  // namespace smokebox

@@ -117,7 +117,7 @@ void SpringSet::layOut(const Bodies& bodies) {
       else
         solveAtOnce({k});
     if (many.empty()) continue;
-    sheets_.emplace_back();
+    sheets_.emplace_back(*pool_);
     sheets_.back().layOut(many, springs_, before);
     many.clear();
   }

@@ -10,6 +10,8 @@ class Fnv1a;
 
 class SpringSet {
  public:
+  explicit SpringSet(ThreadPool& pool) : pool_(&pool) {}
+
   int add(const SpringDef& def, const Bodies& bodies);
   void remove(int spring);
   void removeAt(int body);
@@ -59,6 +61,7 @@ class SpringSet {
   double distance(int spring, const Bodies& bodies) const;
   void push(int spring, Bodies& bodies, double share, const std::vector<char>* fresh) const;
 
+  ThreadPool* pool_;
   std::vector<Spring> springs_;
   std::vector<SpringIsland> islands_;
   std::vector<SpringSheet> sheets_;       // one for each group that hangs together

@@ -56,6 +56,7 @@ void SpringSheet::layOut(const std::vector<int>& springs, const std::vector<Spri
        {&place_, &moved_, &impulse_, &pulls_, &velocity_, &rest_, &made_, &product_, &left_})
     bands_.makeField(*each);
   for (NodeField<float>* each : {&missing_, &direction_, &step_, &change_}) bands_.makeField(*each);
+  beyond_.resize((bands_.nodes() + bands_.grain() - 1) / bands_.grain());
   settled_ = false;
   fresh_.assign(body_.size(), 1);
   for (const SpringSheet& sheet : before)
@@ -107,29 +108,58 @@ void SpringSheet::warmStart(Bodies& bodies, double h, double hBefore) {
   double *x = place_.x(), *y = place_.y(), *movedX = moved_.x(), *movedY = moved_.y();
   double *velocityX = velocity_.x(), *velocityY = velocity_.y();
   const double *impulseX = impulse_.x(), *impulseY = impulse_.y();
-  for (std::size_t k = 0; k < body_.size(); ++k) {
-    const Vec2 now = bodies.unwrappedNow(body_[k]);
-    Motion& v = bodies.velocity[body_[k]];
-    movedX[k] = fresh_[k] ? hBefore * v.x : now.x - x[k];
-    movedY[k] = fresh_[k] ? hBefore * v.y : now.y - y[k];
-    x[k] = now.x, y[k] = now.y;
-    fresh_[k] = 0;
-    v.x += inverse_[k] * impulseX[k];
-    v.y += inverse_[k] * impulseY[k];
-    velocityX[k] = v.x, velocityY[k] = v.y;
-  }
+  pool_->blocks(0, static_cast<int>(body_.size()), bands_.grain(), [&](int first, int last) {
+    for (int k = first; k < last; ++k) {
+      const Vec2 now = bodies.unwrappedNow(body_[k]);
+      Motion& v = bodies.velocity[body_[k]];
+      movedX[k] = fresh_[k] ? hBefore * v.x : now.x - x[k];
+      movedY[k] = fresh_[k] ? hBefore * v.y : now.y - y[k];
+      x[k] = now.x, y[k] = now.y;
+      fresh_[k] = 0;
+      v.x += inverse_[k] * impulseX[k];
+      v.y += inverse_[k] * impulseY[k];
+      velocityX[k] = v.x, velocityY[k] = v.y;
+    }
+  });
   h_ = h;
   settled_ = false;
   findRows();
 }
 
-void SpringSheet::findRows() {
-  bands_.makeField(pulls_);
+SpringRows SpringSheet::startRows() const {
   SpringRows rows;
   rows.h = h_, rows.hBefore = hBefore_, rows.mass = unit_;
-  for (int from = 0; from < bands_.nodes(); from += SpringRows::kMost)
+  return rows;
+}
+
+void SpringSheet::findRows() {
+  bands_.makeField(pulls_);
+  const int grain = bands_.grain(), nodes = bands_.nodes();
+  pool_->blocks(0, nodes, grain, [&](int first, int last) { findRowsOf(first, last); });
+  for (int part = 0; (part + 1) * grain < nodes; ++part) {
+    const int from = (part + 1) * grain, count = std::min(bands_.reach(), nodes - from);
+    const double *moreX = beyond_[part].x(), *moreY = beyond_[part].y();
+    double *x = pulls_.x() + from, *y = pulls_.y() + from;
+#pragma omp simd
+    for (int k = 0; k < count; ++k) x[k] += moreX[k], y[k] += moreY[k];
+  }
+  if (!bands_.looseEnds().empty()) findLooseRows();
+}
+
+/// Of the springs whose first node is from `first` to before `last`.
+void SpringSheet::findRowsOf(int first, int last) {
+  SpringRows rows = startRows();
+  NodeField<double>& beyond = beyond_[first / bands_.grain()];
+  beyond.assign(0, bands_.reach());
+  const auto add = [&](double* x, double* y, int from, int to) {
+#pragma omp simd
+    for (int k = from; k < to; ++k)
+      x[k] += static_cast<double>(rows.pullX[k]), y[k] += static_cast<double>(rows.pullY[k]);
+  };
+  for (int from = first; from < last; from += SpringRows::kMost)
     for (const SpringBands::Band& band : bands_.bands()) {
-      const int begin = std::max(from, band.first), end = std::min(from + SpringRows::kMost, band.last);
+      const int begin = std::max(from, band.first),
+                end = std::min({from + SpringRows::kMost, band.last, last});
       if (begin >= end) continue;
       const int count = end - begin, next = begin + band.offset;
       auto ends = [&](const NodeField<double>& field) {
@@ -137,19 +167,18 @@ void SpringSheet::findRows() {
       };
       rows.place = ends(place_), rows.moved = ends(moved_), rows.velocity = ends(velocity_);
       rows.find(laws_, band.slot + begin, count, matrices_);
-      double *x = pulls_.x(), *y = pulls_.y();
+      double *x = pulls_.x() + begin, *y = pulls_.y() + begin;
 #pragma omp simd
       for (int k = 0; k < count; ++k)
-        x[begin + k] -= static_cast<double>(rows.pullX[k]),
-            y[begin + k] -= static_cast<double>(rows.pullY[k]);
-#pragma omp simd
-      for (int k = 0; k < count; ++k)
-        x[next + k] += static_cast<double>(rows.pullX[k]), y[next + k] += static_cast<double>(rows.pullY[k]);
+        x[k] -= static_cast<double>(rows.pullX[k]), y[k] -= static_cast<double>(rows.pullY[k]);
+      const int within = std::clamp(last - next, 0, count);
+      add(pulls_.x() + next, pulls_.y() + next, 0, within);
+      add(beyond.x() + (next - last), beyond.y() + (next - last), within, count);
     }
-  if (!bands_.looseEnds().empty()) findLooseRows(rows);
 }
 
-void SpringSheet::findLooseRows(SpringRows& rows) {
+void SpringSheet::findLooseRows() {
+  SpringRows rows = startRows();
   struct Gathered {
     double ax[SpringRows::kMost], ay[SpringRows::kMost], bx[SpringRows::kMost], by[SpringRows::kMost];
     SpringEnds from(const NodeField<double>& field, const std::array<int, 2>* ends, int count) {

@@ -16,6 +16,7 @@ namespace smokebox {
 
 class SpringSheet {
  public:
+  explicit SpringSheet(ThreadPool& pool) : pool_(&pool) {}
   /// Whether a spring is of the kind that this can do: between two bodies, at their centres or where they do
   /// not turn.
   static bool takes(const Spring& spring, const Bodies& bodies);
@@ -46,14 +47,17 @@ class SpringSheet {
     SpringDef def;           // as of the last step
   };
 
+  SpringRows startRows() const;
   void findRows();
-  void findLooseRows(SpringRows& rows);
+  void findRowsOf(int first, int last);
+  void findLooseRows();
   double residual(const Bodies& bodies, double& made);
   double conjugateGradients(double left, double enough, double scale);
   double advance(float along);
   void turn(float keep);
   void keepEnergy(const Bodies& bodies, double scale);
 
+  ThreadPool* pool_;
   std::vector<Link> links_;  // in the order of springs
   SpringBands bands_;
   SpringLaws laws_;
@@ -67,10 +71,12 @@ class SpringSheet {
   NodeField<double> impulse_;                // of the springs, in this sub-step
   NodeField<double> velocity_;               // of the warm start
   NodeField<double> pulls_;                  // bias + matrix rate of springs then, with their signs
+  std::vector<NodeField<double>> beyond_;    // by part of the nodes: what its springs add to later parts
   NodeField<double> rest_;                   // impulses that are missing before the last solve
   NodeField<double> left_;                   // velocities as they were left by the last solve
   NodeField<double> made_, product_;         // for keepEnergy
   NodeField<float> missing_, direction_, step_, change_;  // of the conjugate gradients
+  std::vector<double> sums_;                              // by part of the nodes
   double h_ = 0, hBefore_ = 0;                            // s
   double size_ = 0, total_ = 0, unit_ = 1;                // mean length; mass of what moves, all and the mean
   long iterations_ = 0;

@@ -23,58 +23,72 @@ double SpringSheet::residual(const Bodies& bodies, double& made) {
   // Against the warm start, for which the pulls are known.
   double *newX = made_.x(), *newY = made_.y();
   const double *velocityX = velocity_.x(), *velocityY = velocity_.y();
-  bool same = true;
-  for (std::size_t k = 0; k < body_.size(); ++k) {
-    const Motion& v = bodies.velocity[body_[k]];
-    newX[k] = v.x - velocityX[k], newY[k] = v.y - velocityY[k];
-    same = same && newX[k] == 0 && newY[k] == 0;
-  }
-  if (same)
-    bands_.makeField(rest_);
+  const int count = static_cast<int>(body_.size()), nodes = bands_.nodes(), grain = bands_.grain();
+  const double others = pool_->max(0, count, grain, 0, [&](int first, int last) {
+    bool same = true;
+    for (int k = first; k < last; ++k) {
+      const Motion& v = bodies.velocity[body_[k]];
+      newX[k] = v.x - velocityX[k], newY[k] = v.y - velocityY[k];
+      same = same && newX[k] == 0 && newY[k] == 0;
+    }
+    return same ? 0 : 1;
+  });
+  if (others > 0)
+    bands_.multiply(matrices_, nullptr, made_, rest_, *pool_);
   else
-    bands_.multiply(matrices_, nullptr, made_, rest_);
+    bands_.makeField(rest_);
   double *restX = rest_.x(), *restY = rest_.y();
   const double *impulseX = impulse_.x(), *impulseY = impulse_.y(), *pullX = pulls_.x(), *pullY = pulls_.y(),
                *inverses = inverse_.data();
-  Lanes missing{}, springs{};
-  for (int k = 0; k < bands_.nodes(); k += 4) {
-    const Lanes ownX = load(impulseX + k), ownY = load(impulseY + k), inverse = load(inverses + k);
-    const Lanes x = -(unit_ * load(restX + k) + ownX + load(pullX + k)),
-                y = -(unit_ * load(restY + k) + ownY + load(pullY + k));
-    store(restX + k, x);
-    store(restY + k, y);
-    missing += (x * x + y * y) * inverse;
-    springs += (ownX * ownX + ownY * ownY) * inverse;
-  }
-  made = sumOf(springs);
-  return sumOf(missing);
+  made = 0;
+  sums_.resize(beyond_.size());
+  const double missing = pool_->sum(0, nodes, grain, [&](int first, int last) {
+    Lanes without{}, springs{};
+    for (int k = first; k < last; k += 4) {
+      const Lanes ownX = load(impulseX + k), ownY = load(impulseY + k), inverse = load(inverses + k);
+      const Lanes x = -(unit_ * load(restX + k) + ownX + load(pullX + k)),
+                  y = -(unit_ * load(restY + k) + ownY + load(pullY + k));
+      store(restX + k, x);
+      store(restY + k, y);
+      without += (x * x + y * y) * inverse;
+      springs += (ownX * ownX + ownY * ownY) * inverse;
+    }
+    sums_[first / grain] = sumOf(springs);
+    return sumOf(without);
+  });
+  for (const double sum : sums_) made += sum;
+  return missing;
 }
 
 double SpringSheet::advance(float along) {
   float *missingX = missing_.x(), *missingY = missing_.y(), *changeX = change_.x(), *changeY = change_.y();
   const float *directionX = direction_.x(), *directionY = direction_.y(), *stepX = step_.x(),
               *stepY = step_.y(), *inverses = inverseShare_.data();
-  FloatLanes sum{};
-  for (int k = 0; k < bands_.nodes(); k += kLanes) {
-    store(changeX + k, load(changeX + k) + along * load(directionX + k));
-    store(changeY + k, load(changeY + k) + along * load(directionY + k));
-    const FloatLanes x = load(missingX + k) - along * load(stepX + k),
-                     y = load(missingY + k) - along * load(stepY + k);
-    store(missingX + k, x);
-    store(missingY + k, y);
-    sum += (x * x + y * y) * load(inverses + k);
-  }
-  return sumOf(sum);
+  return pool_->sum(0, bands_.nodes(), bands_.grain(), [&](int first, int last) {
+    FloatLanes sum{};
+    for (int k = first; k < last; k += kLanes) {
+      store(changeX + k, load(changeX + k) + along * load(directionX + k));
+      store(changeY + k, load(changeY + k) + along * load(directionY + k));
+      const FloatLanes x = load(missingX + k) - along * load(stepX + k),
+                       y = load(missingY + k) - along * load(stepY + k);
+      store(missingX + k, x);
+      store(missingY + k, y);
+      sum += (x * x + y * y) * load(inverses + k);
+    }
+    return sumOf(sum);
+  });
 }
 
 void SpringSheet::turn(float keep) {
   const float *missingX = missing_.x(), *missingY = missing_.y(), *inverses = inverseShare_.data();
   float *directionX = direction_.x(), *directionY = direction_.y();
-  for (int k = 0; k < bands_.nodes(); k += kLanes) {
-    const FloatLanes inverse = load(inverses + k);
-    store(directionX + k, inverse * load(missingX + k) + keep * load(directionX + k));
-    store(directionY + k, inverse * load(missingY + k) + keep * load(directionY + k));
-  }
+  pool_->blocks(0, bands_.nodes(), bands_.grain(), [&](int first, int last) {
+    for (int k = first; k < last; k += kLanes) {
+      const FloatLanes inverse = load(inverses + k);
+      store(directionX + k, inverse * load(missingX + k) + keep * load(directionX + k));
+      store(directionY + k, inverse * load(missingY + k) + keep * load(directionY + k));
+    }
+  });
 }
 
 /// Of (shares of mass + matrices) change = missing, both in units of `scale` and the unit of mass, so that
@@ -94,7 +108,7 @@ double SpringSheet::conjugateGradients(double left, double enough, double scale)
   const int most = settled_ ? kMostAgain : kMostIterations;
   for (int iteration = 0; iteration < most && left > enough; ++iteration) {
     ++iterations_;
-    const double along = left / bands_.multiply(matrices_, share_.data(), direction_, step_);
+    const double along = left / bands_.multiply(matrices_, share_.data(), direction_, step_, *pool_);
     const double next = advance(static_cast<float>(along));
     turn(static_cast<float>(next / left));
     left = next;
@@ -129,19 +143,21 @@ double SpringSheet::solve(Bodies& bodies) {
     meanX /= total_, meanY /= total_;
   }
   double *impulseX = impulse_.x(), *impulseY = impulse_.y();
-  double largest = 0;
-  for (int k = 0; k < count; ++k) {
-    Motion& v = bodies.velocity[body_[k]];
-    const double x = scale * (changeX[k] - meanX), y = scale * (changeY[k] - meanY);
-    v.x += x;
-    v.y += y;
-    leftX[k] = v.x, leftY[k] = v.y;
-    impulseX[k] += mass_[k] * x;
-    impulseY[k] += mass_[k] * y;
-    largest = std::max({largest, std::fabs(x), std::fabs(y)});
-  }
   settled_ = true;
-  return largest;
+  return pool_->max(0, count, bands_.grain(), 0, [&](int first, int last) {
+    double largest = 0;
+    for (int k = first; k < last; ++k) {
+      Motion& v = bodies.velocity[body_[k]];
+      const double x = scale * (changeX[k] - meanX), y = scale * (changeY[k] - meanY);
+      v.x += x;
+      v.y += y;
+      leftX[k] = v.x, leftY[k] = v.y;
+      impulseX[k] += mass_[k] * x;
+      impulseY[k] += mass_[k] * y;
+      largest = std::max({largest, std::fabs(x), std::fabs(y)});
+    }
+    return largest;
+  });
 }
 
 /// With v* the velocities without the springs, and g the residual: backward Euler takes energy away if g is
@@ -184,8 +200,9 @@ void SpringSheet::keepEnergy(const Bodies& bodies, double scale) {
   }
   std::vector<double> share(mass_);
   for (double& each : share) each *= perUnit;
-  const double aa = bands_.multiply(matrices_, share.data(), made_, product_), ab = dot(without, product_);
-  const double bb = bands_.multiply(matrices_, share.data(), without, product_);
+  const double aa = bands_.multiply(matrices_, share.data(), made_, product_, *pool_),
+               ab = dot(without, product_);
+  const double bb = bands_.multiply(matrices_, share.data(), without, product_, *pool_);
   const double determinant = aa * bb - ab * ab;
   if (!(determinant > 1e-12 * aa * bb)) return;
   const double a = (ra * bb - rb * ab) / determinant, b = (rb * aa - ra * ab) / determinant;

@@ -36,7 +36,7 @@ struct RigidSystem::State {
   /// todo(body) for all but the walls, by several threads: it must touch that body alone.
   template <class Todo>
   void eachBody(Todo&& todo) {
-    constexpr int kGrain = 2048;
+    constexpr int kGrain = 1024;
     pool.blocks(kWalls, bodies.count(), kGrain, [&](int b, int end) {
       for (; b < end; ++b) todo(b);
     });

@@ -31,7 +31,8 @@ RigidSystem::State::State(const RigidWalls& bounds, Vec2 pull, const RigidMethod
       pool(threads),
       broad(bounds, threads),
       narrow(threads),
-      blocks(threads) {
+      blocks(threads),
+      springs(threads) {
   constexpr double kEdge = 1e-12;  // of the domain: inside by more than a rounding
   bodies.period = {bounds.width, bounds.height};
   edge = kEdge * bodies.period;

@@ -7,9 +7,14 @@
 
 namespace smokebox::test {
 
+inline ThreadPool& oneThread() {
+  static ThreadPool pool(1);
+  return pool;
+}
+
 struct LinksWorld {
   Bodies bodies;
-  SpringSet springs;
+  SpringSet springs{oneThread()};
   JointSet joints;
   Vec2 gravity;
   double drag = 0;  // 1/s, to come to rest
