@@ -11,13 +11,33 @@ std::string SourcePlace::text() const {
   return text;
 }
 
+namespace {
+/// Control characters as they are written in YAML, so that each problem is one line.
+std::string onOneLine(const std::string& text) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string line;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '\n')
+      line += "\\n";
+    else if (c == '\t')
+      line += "\\t";
+    else if (code < 0x20 || code == 0x7f)
+      line += std::string("\\x") + kDigits[code >> 4] + kDigits[code & 15];
+    else
+      line += c;
+  }
+  return line;
+}
+}  // namespace
+
 std::string Problem::text() const {
   std::string text = place.text();
   if (!text.empty()) text += ": ";
   if (warning) text += "warning: ";
   text += message;
   if (!hint.empty()) text += " (" + hint + ")";
-  return text;
+  return onOneLine(text);
 }
 
 namespace {

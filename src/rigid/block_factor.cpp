@@ -1,6 +1,7 @@
 #include "rigid/block_factor.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace smokebox {
 
@@ -9,10 +10,14 @@ namespace {
 template <int N>
 using BlockOf = std::array<double, N * N>;
 
-/// By elimination without pivots.
+/// By elimination without pivots; without the rows and columns whose pivots are not beyond `least`.
 template <int N>
-BlockOf<N> inverseOf(BlockOf<N> a) {
+BlockOf<N> inverseOf(BlockOf<N> a, const std::array<double, N>& least) {
   for (int k = 0; k < N; ++k) {
+    if (!(std::fabs(a[k * N + k]) > least[k])) {
+      for (int j = 0; j < N; ++j) a[k * N + j] = a[j * N + k] = 0;
+      continue;
+    }
     const double pivot = 1 / a[k * N + k];
     a[k * N + k] = 1;
     for (int j = 0; j < N; ++j) a[k * N + j] *= pivot;
@@ -120,10 +125,10 @@ void BlockFactor<N>::clear() {
 }
 
 template <int N>
-void BlockFactor<N>::factor() {
+void BlockFactor<N>::factor(const std::vector<Row>& least) {
   const int* target = target_.data();
   for (int k = 0; k < count(); ++k) {
-    inverse_[k] = inverseOf<N>(diagonal_[k]);
+    inverse_[k] = inverseOf<N>(diagonal_[k], least.empty() ? Row{} : least[order_[k]]);
     const int begin = columnStart_[k], end = columnStart_[k + 1];
     // Row s becomes L; of two rows, (s, t) lies below the diagonal and (t, s) above, stored transposed.
     for (int s = begin; s < end; ++s) lower_[s] = product<N>(lower_[s], inverse_[k]);

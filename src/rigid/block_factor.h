@@ -4,7 +4,9 @@
 // L D U by blocks, eliminated in the order of least degree (ties: the lower number), so that a chain or a
 // tree costs a time in proportion to its length. What memory the factors need, and which block each product
 // lands in, is found once, when the pattern changes. Sums run in a fixed order, one by one: the result does
-// not depend on the instruction set. No pivoting: the caller sees to it that the diagonal is positive.
+// not depend on the instruction set. No pivoting: the caller sees to it that the diagonal is positive. What
+// an elimination leaves nothing of is a row that the others imply: it may be left out, so that its unknown is
+// 0.
 #pragma once
 #include <array>
 #include <vector>
@@ -32,8 +34,9 @@ class BlockFactor {
   /// Transposed: with the same rows and columns as the lower block, and equal to it if the matrix is
   /// symmetric.
   Block& upper(int slot) { return upper_[slot]; }
-  /// Of what is there now, which is used up by it.
-  void factor();
+  /// Of what is there now, which is used up by it. Rows of which an elimination leaves no more than `least`,
+  /// by number, are left out; it may be empty.
+  void factor(const std::vector<Row>& least = {});
   /// In place: x[i] from the right-hand side to the solution.
   void solve(std::vector<Row>& x) const;
 

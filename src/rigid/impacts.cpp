@@ -25,6 +25,9 @@ constexpr double kOfFlying = 0.05;
 // solver.
 constexpr long kFreeOfStep = 1000, kFreeOfBody = 2, kDoubling = 100;
 
+// Joints that leave less than this share of what the bodies would do alone hold them altogether.
+constexpr double kHeld = 1e-9;
+
 /// What displacements make of a point's gap.
 double gapOf(const std::vector<Motion>& way, const Contact& contact, const ContactPoint& point) {
   const Motion &wa = way[contact.a], &wb = way[contact.b];
@@ -86,11 +89,10 @@ void Impacts::pushTied(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 a
 
 double Impacts::response(Bodies& bodies, const Contact& contact, const ContactPoint& p, Vec2 d,
                          const ContactPoint& q, Vec2 e) {
-  if (!isTied(contact)) {
-    const InverseMass &ma = bodies.inverse[contact.a], &mb = bodies.inverse[contact.b];
-    return dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
-           mb.inertia * cross(p.armB, d) * cross(q.armB, e);
-  }
+  const InverseMass &ma = bodies.inverse[contact.a], &mb = bodies.inverse[contact.b];
+  const double alone = dot(d, e) * (ma.mass + mb.mass) + ma.inertia * cross(p.armA, d) * cross(q.armA, e) +
+                       mb.inertia * cross(p.armB, d) * cross(q.armB, e);
+  if (!isTied(contact)) return alone;
   const auto parting = [&] {
     return dot(d, bodies.velocityAt(contact.b, p.armB) - bodies.velocityAt(contact.a, p.armA));
   };
@@ -103,7 +105,7 @@ double Impacts::response(Bodies& bodies, const Contact& contact, const ContactPo
   pushTied(bodies, contact, q.armA, q.armB, e);
   const double made = parting() - still;
   for (std::size_t k = 0; k < together_.size(); ++k) bodies.velocity[together_[k]] = before_[k];
-  return made;
+  return std::fabs(made) > kHeld * std::fabs(alone) ? made : 0;
 }
 
 void Impacts::push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB, Vec2 impulse, double time,
@@ -246,6 +248,10 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   const double k00 = responseOf(struck[0], n, struck[0], n);
   const double k01 = count == 2 ? responseOf(struck[0], n, struck[1], n) : 0;
   const double k11 = count == 2 ? responseOf(struck[1], n, struck[1], n) : 0;
+  if (!(k00 > 0) || (count == 2 && !(k11 > 0))) {  // joints hold them: there is nothing to strike
+    settle();
+    return false;
+  }
   const double det = k00 * k11 - k01 * k01;
   if (count == 2 && det > 1e-9 * k00 * k11) {  // both at once
     const double k[4] = {k00, k01, k11, 1 / det};
@@ -260,8 +266,10 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   for (int k = 0; k < count; ++k) {
     const Vec2 slip =
         bodies.velocityAt(contact.b, struck[k].armB) - bodies.velocityAt(contact.a, struck[k].armA);
-    const double most = contact.friction * normal[k];
-    const double stop = -dot(tangent, slip) / responseOf(struck[k], tangent, struck[k], tangent);
+    const double most = contact.friction * normal[k],
+                 own = responseOf(struck[k], tangent, struck[k], tangent);
+    if (!(own > 0)) continue;
+    const double stop = -dot(tangent, slip) / own;
     push(bodies, contact, struck[k].armA, struck[k].armB, std::clamp(stop, -most, most) * tangent, now, way);
   }
   contact.struck = true;

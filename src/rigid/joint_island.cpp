@@ -14,10 +14,14 @@ namespace {
 constexpr int kMostIterations = 40;
 // Kinetic energy that a solution may have, times that of the linear one.
 constexpr double kMostGain = 1.02;
+// ... and that joints may make of what there is without them, and at this speed, m/s.
+constexpr double kFlung = 4, kGentle = 2;
 constexpr int kLastToJoin = 8;  // iterations after which drives only let go
-// Added to the diagonal, as a share of it: joints that say the same thing twice stay solvable.
-constexpr double kSoftening = 1e-10;
-// ... of those that are open: where they pull against each other the forces have bounds.
+// What the other joints leave less of than this share of a row's inertia they imply already: it is left out.
+// Where a joint is off by a gap, the directions of its rows are, too: by that share of its reach.
+constexpr double kImplied = 1e-10, kImpliedByGap = 4, kImpliedMost = 1e-3;
+// Added to the diagonal of joints that are open, as a share of it: where they pull against each other the
+// forces have bounds.
 constexpr double kSofteningOpen = 0.5;
 // What a gap may shrink by in a sub-step, as a share of the joint's reach: a joint that does not fit when it
 // is made, or is torn apart by a script, closes within tens of sub-steps.
@@ -27,6 +31,11 @@ constexpr double kLimitClosing = 0.1;
 
 double inertiaBetween(const Jacobian& i, const Jacobian& j, const InverseMass& m) {
   return m.mass * (i.x * j.x + i.y * j.y) + m.inertia * (i.turn * j.turn);
+}
+
+double kineticOf(const InverseMass& m, const Motion& v) {
+  return (m.mass > 0 ? 0.5 * (v.x * v.x + v.y * v.y) / m.mass : 0) +
+         (m.inertia > 0 ? 0.5 * v.turn * v.turn / m.inertia : 0);
 }
 
 void pushBody(Motion& v, const InverseMass& m, const std::array<Jacobian, 3>& rows, const JointRow& impulse) {
@@ -48,7 +57,7 @@ bool JointIsland::layOut(const std::vector<int>& joints, const std::vector<Joint
   for (const int joint : joints) ends.push_back({all[joint].def.a.body, all[joint].def.b.body});
   for (const auto& pair : ends)
     for (const int body : pair)
-      if (body >= 0) places_.push_back({body, {}, 0, {}, 1, 0});
+      if (body >= 0) places_.push_back({body, {}, 0, {}, 1, 0, {}});
   std::sort(places_.begin(), places_.end(), [](const Place& p, const Place& q) { return p.body < q.body; });
   places_.erase(std::unique(places_.begin(), places_.end(),
                             [](const Place& p, const Place& q) { return p.body == q.body; }),
@@ -77,6 +86,7 @@ bool JointIsland::layOut(const std::vector<int>& joints, const std::vector<Joint
                           firstLater ? s.second : s.first, s.body});
   }
   unknowns_.assign(count, JointRow{});
+  implied_.assign(count, JointRow{});
   return true;
 }
 
@@ -131,8 +141,10 @@ void JointIsland::prepare(Link& link, Joint& joint, double h) {
                       std::fabs(now.b.position.x) + std::fabs(now.b.position.y);
   const int kept = equalities(def.kind);
   link.open = {};
+  link.off = 0;
   for (int r = 0; r < 3; ++r) {
     const bool angle = isAngle(def.kind, r);
+    if (r < kept) link.off = std::max(link.off, std::fabs(link.gap[r]) / (angle ? 1.0 : link.reach));
     link.tolerance[r] = angle ? 1e-13 + 1e-15 * (std::fabs(now.angleA) + std::fabs(now.angleB))
                               : 1e-13 * link.reach + 1e-15 * away;
     const double most = kClosing * (angle ? 1.0 : link.reach);
@@ -202,13 +214,30 @@ void JointIsland::stiffenAgain(const std::vector<Joint>& joints, Bodies& bodies,
 
 double JointIsland::kinetic(const Bodies& bodies) const {
   double sum = 0;
-  for (const Place& p : places_) {
-    const Motion& v = bodies.velocity[p.body];
-    const InverseMass& m = bodies.inverse[p.body];
-    if (m.mass > 0) sum += 0.5 * (v.x * v.x + v.y * v.y) / m.mass;
-    if (m.inertia > 0) sum += 0.5 * v.turn * v.turn / m.inertia;
-  }
+  for (const Place& p : places_) sum += kineticOf(bodies.inverse[p.body], bodies.velocity[p.body]);
   return sum;
+}
+
+void JointIsland::doubt(const std::vector<Joint>& joints, const Bodies& bodies) {
+  for (Place& p : places_) {
+    p.free = bodies.velocity[p.body];
+    if (!bodies.moves(p.body) && (p.free.x != 0 || p.free.y != 0 || p.free.turn != 0)) return;  // it drives
+  }
+  for (const Link& link : links_) {
+    const Joint& joint = joints[link.joint];
+    if (hasDrive(joint.def) && link.drive.push > 0) return;  // a motor
+    const JointRow& made = joint.impulse;
+    const JointRow back{-made[0], -made[1], -made[2]};
+    if (link.a >= 0) pushBody(places_[link.placeA].free, places_[link.placeA].inverse, link.rows.a, back);
+    if (link.b >= 0) pushBody(places_[link.placeB].free, places_[link.placeB].inverse, link.rows.b, back);
+  }
+  double now = 0, without = 0, mass = 0;
+  for (const Place& p : places_) {
+    const InverseMass& m = bodies.inverse[p.body];
+    now += kineticOf(m, bodies.velocity[p.body]), without += kineticOf(m, p.free);
+    if (m.mass > 0) mass += 1 / m.mass;
+  }
+  if (!(now <= kFlung * (without + 0.5 * mass * kGentle * kGentle))) settled_ = false;
 }
 
 bool JointIsland::mark(std::vector<char>& marked) const {
@@ -248,10 +277,14 @@ void JointIsland::factor() {
       link.ownInertia[i] = inertiaBetween(link.rows.a[i], link.rows.a[i], a) +
                            inertiaBetween(link.rows.b[i], link.rows.b[i], b);
       // A row that moves nothing (the angle between two particles) is left out.
-      if (on[i] && link.ownInertia[i] > 0)
-        block[4 * i] += (link.open[i] ? kSofteningOpen : kSoftening) * link.ownInertia[i];
-      else
+      implied_[k][i] =
+          std::clamp(kImpliedByGap * link.off * link.off, kImplied, kImpliedMost) * link.ownInertia[i];
+      if (!on[i] || !(link.ownInertia[i] > 0)) {
         block[4 * i] = 1;
+        implied_[k][i] = 0;
+      } else if (link.open[i]) {
+        block[4 * i] += kSofteningOpen * link.ownInertia[i];
+      }
     }
   }
   for (const Coupling& c : couplings_) {
@@ -271,7 +304,7 @@ void JointIsland::factor() {
         upper[3 * i + j] += inertiaBetween(columnsAtEnd[j], rows[i], m);
       }
   }
-  matrix_.factor();
+  matrix_.factor(implied_);
 }
 
 JointRow JointIsland::ratesOf(const Link& link, const Joint& joint, const Bodies& bodies, double h) const {

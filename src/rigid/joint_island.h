@@ -49,6 +49,9 @@ class JointIsland {
     for (const Place& p : places_)
       if (bodies.moves(p.body)) visit(p.body);
   }
+  /// After a sub-step: joints only lead bodies elsewhere, so what they give much energy to was flung by rows
+  /// that all but contradict one another. It counts as not settled.
+  void doubt(const std::vector<Joint>& joints, const Bodies& bodies);
   /// Did no motion satisfy it in this sub-step, or is a joint farther open than a sub-step closes?
   bool isTorn() const { return !settled_ || linear_ || isOpen_; }
   /// Marks all its bodies if it is torn or one of them is marked. False: nothing new.
@@ -78,6 +81,7 @@ class JointIsland {
     int side = 0;                // in impacts: the sign of a drive's impulse; 0: it has no drive that holds
     std::array<bool, 3> open{};  // rows: farther than a sub-step closes
     double reach = 0;            // m
+    double off = 0;              // its widest gap, as a share of its reach, or rad
     JointRow tolerance{};        // of gaps
   };
   struct Coupling {
@@ -90,6 +94,7 @@ class JointIsland {
     InverseMass inverse;
     double kept = 1;   // of its spin, when its inertia grew
     double swing = 0;  // N s m: how fast the joints' moment on it falls as it turns
+    Motion free;       // its velocity without the joints
   };
 
   void place(const Bodies& bodies, double h);
@@ -110,7 +115,7 @@ class JointIsland {
   std::vector<Place> places_;
   std::vector<Coupling> couplings_;
   BlockFactor<3> matrix_;
-  std::vector<JointRow> unknowns_;
+  std::vector<JointRow> unknowns_, implied_;  // implied_: pivots of rows that count as nothing
   /// Of a sub-step: the constraints as they are; if that fails, as linear, to know the impulses; as they are,
   /// with inertia to match these; and if that fails too, as linear.
   enum class Phase { asTheyAre, probe, stiffened, linear };

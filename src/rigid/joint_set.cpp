@@ -128,6 +128,10 @@ void JointSet::react(Bodies& bodies, int a, const Motion& changeA, int b, const 
   one(ofB, {-1, b});
 }
 
+void JointSet::doubt(const Bodies& bodies) {
+  for (JointIsland& island : islands_) island.doubt(joints_, bodies);
+}
+
 bool JointSet::anyTorn() const {
   return std::any_of(islands_.begin(), islands_.end(), [](const JointIsland& each) { return each.isTorn(); });
 }

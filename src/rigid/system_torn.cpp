@@ -21,6 +21,7 @@ double energyOf(const InverseMass& m, const Motion& v, const Motion& w) {
 // hangs on such joints, and all that this touches, gets no more energy than it came with: of what the solver
 // did to it only such a share is done. Momentum goes in equal shares, too.
 void RigidSystem::State::yieldTorn() {
+  joints.doubt(bodies);
   if (!joints.anyTorn()) return;
   torn.assign(bodies.count(), 0);
   joints.mark(torn);

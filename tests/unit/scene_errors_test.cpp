@@ -381,6 +381,12 @@ TEST(SceneErrors, AllAreReportedInOneRun) {
   }
 }
 
+TEST(SceneErrors, EachIsOneLine) {
+  // Truth: what a value has of line breaks and other control characters is shown as YAML writes it.
+  const Problem problem{{"s.yaml", 3, 4}, "no colour `a\nb\x1b[1m\t`", "or\x7f", false};
+  EXPECT_EQ(problem.text(), "s.yaml:3:4: no colour `a\\nb\\x1b[1m\\t` (or\\x7f)");
+}
+
 TEST(SceneErrors, WarningsDoNotStopAnything) {
   // Truth: things outside of the domain and after the end are odd, but can be run.
   const std::string solid = kDomain + "solids: [{shape: {circle: {radius: .1}}, position: [5, 5]}]\n";
