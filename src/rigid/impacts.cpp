@@ -1,6 +1,7 @@
 #include "rigid/impacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rigid/collide.h"
@@ -25,8 +26,10 @@ constexpr double kOfFlying = 0.05;
 // solver.
 constexpr long kFreeOfStep = 1000, kFreeOfBody = 2, kDoubling = 100;
 
+// An impact whose outcome is off by more than this share of the approach does not happen.
+constexpr double kAsReckoned = 0.1;
 // Joints that leave less than this share of what the bodies would do alone hold them altogether.
-constexpr double kHeld = 1e-9;
+constexpr double kHeld = 1e-7;
 
 /// What displacements make of a point's gap.
 double gapOf(const std::vector<Motion>& way, const Contact& contact, const ContactPoint& point) {
@@ -133,6 +136,18 @@ void Impacts::push(Bodies& bodies, const Contact& contact, Vec2 armA, Vec2 armB,
   };
   one(contact.a, armA, -impulse);
   one(contact.b, armB, impulse);
+}
+
+void Impacts::remember(const Bodies& bodies, const std::vector<Motion>& way) {
+  kept_.clear();
+  for (const int body : together_) kept_.push_back({bodies.velocity[body], way[body]});
+}
+
+void Impacts::restore(Bodies& bodies, std::vector<Motion>& way) const {
+  for (std::size_t k = 0; k < together_.size(); ++k) {
+    bodies.velocity[together_[k]] = kept_[k][0];
+    way[together_[k]] = kept_[k][1];
+  }
 }
 
 Frame Impacts::frameAt(const Bodies& bodies, const std::vector<Motion>& way, int body, double h,
@@ -260,8 +275,23 @@ bool Impacts::strike(Bodies& bodies, Contact& contact, double h, double least, d
   } else {  // one, or two at one place
     normal[0] = -keep * approaching(struck[0]) / k00;
   }
+  const std::array<double, 2> came{approaching(struck[0]), count == 2 ? approaching(struck[1]) : 0};
+  if (isTied(contact)) remember(bodies, way);
   for (int k = 0; k < count; ++k)
     if (normal[k] > 0) pushNormal(struck[k], normal[k]);
+  if (isTied(contact)) {
+    // Joints that all but hold them leave a response of which nothing is certain.
+    bool asReckoned = true;
+    for (int k = 0; k < count; ++k)
+      asReckoned &= !(normal[k] > 0) || std::fabs(approaching(struck[k]) + contact.bounce * came[k]) <=
+                                            kAsReckoned * std::fabs(came[k]);
+    if (!asReckoned) {
+      restore(bodies, way);
+      contact.total -= std::max(normal[0], 0.0) + std::max(normal[1], 0.0);
+      settle();
+      return false;
+    }
+  }
   // After the normal impulses: friction at most stops the sliding, so it can only take energy.
   for (int k = 0; k < count; ++k) {
     const Vec2 slip =

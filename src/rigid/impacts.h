@@ -8,6 +8,7 @@
 // Impulses go on (body to body to body: a cradle) until nothing approaches, up to a number for each body;
 // each one takes energy or keeps it, so that however many there are, none is added. A step has a bound, too.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "rigid/bodies.h"
@@ -69,9 +70,13 @@ class Impacts {
   double response(Bodies& bodies, const Contact& contact, const ContactPoint& p, Vec2 d,
                   const ContactPoint& q, Vec2 e);
 
+  void remember(const Bodies& bodies, const std::vector<Motion>& way);
+  void restore(Bodies& bodies, std::vector<Motion>& way) const;
+
   JointSet& joints_;
   std::vector<int> together_;   // that the contact at hand changes, if joints hold one of its bodies
   std::vector<Motion> before_;  // their velocities
+  std::vector<std::array<Motion, 2>> kept_;  // their velocities and ways before the impact at hand
   Vec2 gravity_;
   long count_ = 0, inStep_ = 0;
   std::vector<double> struckAt_;

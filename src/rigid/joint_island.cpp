@@ -115,7 +115,7 @@ void JointIsland::apply(const Link& link, const JointRow& impulse, Bodies& bodie
 
 void JointIsland::warmStart(std::vector<Joint>& joints, Bodies& bodies, double h) {
   place(bodies, 0);
-  linear_ = curved_ = isOpen_ = false;
+  linear_ = curved_ = isOpen_ = stays_ = false;
   phase_ = Phase::asTheyAre;
   for (Link& link : links_) {
     Joint& joint = joints[link.joint];
@@ -253,6 +253,14 @@ void JointIsland::goLinear(const std::vector<Joint>& joints) {
   linear_ = true;
   for (Link& link : links_) link.atEnd = link.rows;
   factor(joints);
+}
+
+void JointIsland::stayLinear(const std::vector<Joint>& joints, const Bodies& bodies) {
+  if (stays_) return;
+  stays_ = true;
+  phase_ = Phase::linear;
+  for (Place& p : places_) p.inverse = bodies.inverse[p.body];
+  goLinear(joints);
 }
 
 void JointIsland::factor(const std::vector<Joint>& joints) {

@@ -128,6 +128,10 @@ void JointSet::react(Bodies& bodies, int a, const Motion& changeA, int b, const 
   one(ofB, {-1, b});
 }
 
+void JointSet::stayLinear(const Bodies& bodies) {
+  for (JointIsland& island : islands_) island.stayLinear(joints_, bodies);
+}
+
 void JointSet::doubt(const Bodies& bodies) {
   for (JointIsland& island : islands_) island.doubt(joints_, bodies);
 }

@@ -33,6 +33,8 @@ class JointSet {
   /// The velocities of a and b were just changed at once: adds what joints make of it to those of all.
   void beginImpact(Bodies& bodies, int a, int b);
   void react(Bodies& bodies, int a, const Motion& changeA, int b, const Motion& changeB);
+  /// For the rest of the sub-step, where sweeps over joints and contacts diverge.
+  void stayLinear(const Bodies& bodies);
   void doubt(const Bodies& bodies);
   bool anyTorn() const;
   /// Marks by body who hangs on torn joints, or together with one that is marked. False: nothing new.

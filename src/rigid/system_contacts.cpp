@@ -25,6 +25,10 @@ constexpr long kFewPoints = 160;
 constexpr double kSpare = 4;
 // So many sweeps are made before the further ones are drawn along a conjugate direction.
 constexpr int kPlainSweeps = 3;
+// Sweeps over joints and contacts diverge where one changes more than this times what the first ones did, and
+// those at least this much, m/s.
+constexpr int kFirstSweeps = 3;
+constexpr double kDiverges = 4, kDivergesFrom = 1;
 // Beyond these sweeps there are up to so many more where velocities change by this share of the bodies' width
 // in a sub-step; over those places alone where they change by this share of that.
 constexpr int kRoughSweeps = 16;
@@ -164,12 +168,16 @@ void RigidSystem::State::solveContacts(double h) {
     const long work = points(), cost = work + springs.sweepCost();
     conjugate.restart();
     double enough = std::numeric_limits<double>::infinity();  // the first sweep leaves none out
-    double last = 0;
+    double last = 0, most = 0;                                // m/s; most: of the first sweeps
     for (int sweeps = 1; sweeps <= method.maxSweeps; ++sweeps) {
       if (accelerates && sweeps >= kPlainSweeps) conjugate.remember(bodies, blocks, spare, narrow.lively());
       const double change = sweep(h, round == 0 && sweeps == 1, enough);
       enough = kSpare * change;
       last = change;
+      if (sweeps <= kFirstSweeps)
+        most = std::max({most, change, kDivergesFrom});
+      else if (change > kDiverges * most)
+        joints.stayLinear(bodies);
       left -= cost;
       if (sweeps == 1)
         settled =
