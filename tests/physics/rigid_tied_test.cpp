@@ -156,6 +156,54 @@ TEST(RigidTied, AChainOfPinsBouncesOnAPost) {
   EXPECT_LT(most, 1.03 * before);
 }
 
+TEST(RigidTied, JointsThatSayTheSameTwiceHoldWithoutStrain) {
+  // Truth: a box on two rails that are one and the same goes on along them as fast as before, without a
+  // force, though it was thrown across them and spinning; so does what is welded twice.
+  RigidWorld world;
+  const auto box = bodyShape(BoxShape{{0.4, 0.4}});
+  BodyDef thrown = bodyAt(box, {5, 5}, 1);
+  thrown.velocity = {1.5, 0.75};
+  thrown.spin = -7;
+  const int a = world.add(thrown), b = world.add(bodyAt(box, {5, 6}, 1));
+  JointDef rail;
+  rail.kind = JointKind::slide;
+  rail.axis = {1, 0};
+  for (const double x : {4.0, 7.0}) {
+    rail.a = {-1, {x, 5}};
+    rail.b = {a, {x - 5, 0}};
+    world.system.addJoint(rail);
+  }
+  weld(world, a, {0, 0.5}, b, {0, -0.5});
+  weld(world, a, {0.3, 0.7}, b, {0.3, -0.3});
+  world.steps(120);
+  EXPECT_NEAR(world.system.position(a).y, 5, 1e-9);
+  EXPECT_NEAR(world.system.position(b).y, 6, 1e-9);
+  EXPECT_NEAR(world.spin(a), 0, 1e-9);
+  EXPECT_NEAR(world.velocity(a).x, world.velocity(b).x, 1e-9);
+}
+
+TEST(RigidTied, WhatJointsHoldAltogetherIsNotStruck) {
+  // Truth: a ball bounces off a box that is welded to the world as off a wall; two such boxes that touch and
+  // were thrown at each other stay where they are.
+  RigidWorld world;
+  const auto box = bodyShape(BoxShape{{1, 1}});
+  std::vector<int> boxes;
+  for (const double side : {1.0, -1.0}) {
+    BodyDef def = bouncing(bodyAt(box, {20 - 0.5 * side, 20}, 1));
+    def.velocity = {3 * side, 0.1};
+    boxes.push_back(world.add(def));
+  }
+  BodyDef flying = bouncing(bodyAt(bodyShape(CircleShape{0.2}), {15, 20}, 1));
+  flying.velocity = {8, 0};
+  const int ball = world.add(flying);
+  for (const int k : boxes) weld(world, -1, world.system.position(k), k, {});
+  world.steps(60);
+  EXPECT_NEAR(world.velocity(ball).x, -8, 1e-6);
+  EXPECT_NEAR(world.system.position(boxes[0]).x, 19.5, 1e-6);
+  EXPECT_NEAR(world.system.position(boxes[1]).x, 20.5, 1e-6);
+  for (const int k : boxes) EXPECT_LT(length(world.velocity(k)), 1e-6);
+}
+
 TEST(RigidTied, AChainDrawnStraightFlingsNothing) {
   // Truth: what falls on a chain between two nails that has no slack brings all the energy there is.
   for (const int steps : {30, 60, 120, 240}) {

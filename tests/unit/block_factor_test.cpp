@@ -70,6 +70,28 @@ TEST(BlockFactor, SolvesChainsRingsGridsAndStars) {
   EXPECT_LT(residual<3>(1, {}), 1e-14);
 }
 
+TEST(BlockFactor, LeavesOutWhatOtherRowsImply) {
+  // Truth: of two equal rows and a sum of both the first gets the whole, the others nothing, and the rest of
+  // the system does not notice.
+  BlockFactor<2> matrix;
+  ASSERT_TRUE(matrix.layOut(2, {{0, 1}}, 100));
+  matrix.clear();
+  // Rows u, v | u + v, w with u.u = v.v = w.w = 1, at right angles.
+  matrix.diagonal(0) = {1, 0, 0, 1};
+  matrix.diagonal(1) = {2, 0, 0, 1};
+  const int slot = matrix.slot(0, 1);
+  const bool later = matrix.comesAfter(1, 0);
+  matrix.lower(slot) = matrix.upper(slot) =
+      later ? BlockFactor<2>::Block{1, 1, 0, 0} : BlockFactor<2>::Block{1, 0, 1, 0};
+  matrix.factor({{1e-10, 1e-10}, {2e-10, 1e-10}});
+  std::vector<std::array<double, 2>> x{{3, 4}, {7, 5}};
+  matrix.solve(x);
+  EXPECT_NEAR(x[1][1], 5, 1e-12);
+  EXPECT_NEAR(x[0][0] + x[1][0], 3, 1e-12);
+  EXPECT_NEAR(x[0][1] + x[1][0], 4, 1e-12);
+  EXPECT_LT(std::fabs(x[1][0]), 10);
+}
+
 TEST(BlockFactor, AChainCostsInProportionToItsLengthAndACrowdIsRefused) {
   // A chain and a star have no fill: one product for each pair is enough. What would take more is refused.
   std::vector<std::array<int, 2>> chain, star, crowd;
